@@ -1,0 +1,1 @@
+//! Bounding volume hierarchy (contract; implemented by the geometry work).

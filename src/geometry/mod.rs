@@ -1,0 +1,16 @@
+//! Rays, boxes, triangles and the bounding volume hierarchy.
+//!
+//! Everything here is in *internal* coordinates: `f32`, usually centred and scaled by a power of two
+//! when the model was loaded (see [`Normalization`]).
+
+mod aabb;
+pub mod bvh;
+mod mesh;
+mod normalization;
+mod ray;
+pub mod triangle;
+
+pub use aabb::Aabb;
+pub use mesh::{TriangleAttributes, TriangleMesh};
+pub use normalization::Normalization;
+pub use ray::{Hit, OriginRule, Ray, offset_origin};

@@ -1,0 +1,1 @@
+//! Ray–triangle tests (contract; implemented by the geometry work).

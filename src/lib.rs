@@ -1,0 +1,3 @@
+//! Reliefscope.
+pub mod geometry;
+pub mod math;

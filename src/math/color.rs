@@ -1,0 +1,134 @@
+//! Linear light and its sRGB encoding.
+
+use std::ops::{Add, AddAssign, Mul, MulAssign, Sub};
+
+use serde::{Deserialize, Serialize};
+
+/// Linear light with Rec. 709 primaries. Any range: values above 1 are brighter than white.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(from = "[f32; 3]", into = "[f32; 3]")]
+pub struct LinearRgb {
+    /// Red.
+    pub r: f32,
+    /// Green.
+    pub g: f32,
+    /// Blue.
+    pub b: f32,
+}
+
+impl LinearRgb {
+    /// No light.
+    pub const BLACK: Self = Self::new(0.0, 0.0, 0.0);
+    /// Unit light in each channel.
+    pub const WHITE: Self = Self::new(1.0, 1.0, 1.0);
+
+    /// From three channels.
+    #[must_use]
+    pub const fn new(r: f32, g: f32, b: f32) -> Self {
+        Self { r, g, b }
+    }
+
+    /// The same value in each channel.
+    #[must_use]
+    pub const fn gray(value: f32) -> Self {
+        Self::new(value, value, value)
+    }
+
+    /// The channels in order.
+    #[must_use]
+    pub const fn to_array(self) -> [f32; 3] {
+        [self.r, self.g, self.b]
+    }
+
+    /// Largest channel.
+    #[must_use]
+    pub const fn max_channel(self) -> f32 {
+        self.r.max(self.g).max(self.b)
+    }
+
+    /// Whether every channel is a finite number.
+    #[must_use]
+    pub const fn is_finite(self) -> bool {
+        self.r.is_finite() && self.g.is_finite() && self.b.is_finite()
+    }
+
+    /// `f` of each channel.
+    #[must_use]
+    pub fn map(self, f: impl Fn(f32) -> f32) -> Self {
+        Self::new(f(self.r), f(self.g), f(self.b))
+    }
+}
+
+impl From<[f32; 3]> for LinearRgb {
+    fn from([r, g, b]: [f32; 3]) -> Self {
+        Self { r, g, b }
+    }
+}
+impl From<LinearRgb> for [f32; 3] {
+    fn from(c: LinearRgb) -> Self {
+        c.to_array()
+    }
+}
+impl Add for LinearRgb {
+    type Output = Self;
+    fn add(self, o: Self) -> Self {
+        Self::new(self.r + o.r, self.g + o.g, self.b + o.b)
+    }
+}
+impl Sub for LinearRgb {
+    type Output = Self;
+    fn sub(self, o: Self) -> Self {
+        Self::new(self.r - o.r, self.g - o.g, self.b - o.b)
+    }
+}
+impl AddAssign for LinearRgb {
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
+    }
+}
+impl Mul for LinearRgb {
+    type Output = Self;
+    fn mul(self, o: Self) -> Self {
+        Self::new(self.r * o.r, self.g * o.g, self.b * o.b)
+    }
+}
+impl Mul<f32> for LinearRgb {
+    type Output = Self;
+    fn mul(self, k: f32) -> Self {
+        Self::new(self.r * k, self.g * k, self.b * k)
+    }
+}
+impl MulAssign<f32> for LinearRgb {
+    fn mul_assign(&mut self, k: f32) {
+        *self = *self * k;
+    }
+}
+
+/// Decodes one sRGB-encoded channel in `[0, 1]` (IEC 61966-2-1).
+#[must_use]
+pub fn linear_from_srgb(c: f32) -> f32 {
+    if c <= 0.040_45 {
+        c / 12.92
+    } else {
+        ((c + 0.055) / 1.055).powf(2.4)
+    }
+}
+
+/// Encodes one linear channel; values outside `[0, 1]` are clamped, NaN becomes 0.
+#[must_use]
+pub fn srgb_from_linear(c: f32) -> f32 {
+    // max first: f32::max drops a NaN.
+    let c = c.max(0.0).min(1.0);
+    if c <= 0.003_130_8 {
+        c * 12.92
+    } else {
+        1.055 * c.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+/// Encodes linear light into the three bytes that a screen takes, rounded to nearest.
+#[must_use]
+pub fn srgb8_from_linear(c: LinearRgb) -> [u8; 3] {
+    c.to_array()
+        .map(|x| (srgb_from_linear(x) * 255.0 + 0.5) as u8)
+}
