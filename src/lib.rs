@@ -1,3 +1,8 @@
 //! Reliefscope.
 pub mod geometry;
 pub mod math;
+pub mod render;
+pub mod scene;
+pub mod shading;
+pub mod surface;
+pub mod texture;

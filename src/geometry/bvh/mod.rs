@@ -1,1 +1,5 @@
-//! Bounding volume hierarchy (contract; implemented by the geometry work).
+//! Bounding volume hierarchy.
+
+/// A tree over a mesh.
+#[derive(Debug, Default)]
+pub struct Bvh;

@@ -1,0 +1,47 @@
+//! What was really computed.
+
+use std::ops::AddAssign;
+
+use serde::Serialize;
+
+/// Exact counts of work. A feature that the scene does not use must leave its count at 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Counters {
+    /// Camera rays traced (cached hits are not traced again).
+    pub camera_rays: u64,
+    /// Shadow rays traced.
+    pub shadow_rays: u64,
+    /// Mirror reflection rays traced.
+    pub mirror_rays: u64,
+    /// Bilinear look-ups in any map.
+    pub texture_fetches: u64,
+    /// Surface points whose normal or texture coordinate a map changed.
+    pub perturbations: u64,
+    /// Powers taken for highlights.
+    pub power_calls: u64,
+    /// Cut-out decisions taken for eye, mirror and shadow rays.
+    pub cutout_tests: u64,
+    /// Samples that were not finite and counted as black.
+    pub non_finite: u64,
+}
+
+impl Counters {
+    /// Rays of all kinds.
+    #[must_use]
+    pub const fn rays(&self) -> u64 {
+        self.camera_rays + self.shadow_rays + self.mirror_rays
+    }
+}
+
+impl AddAssign for Counters {
+    fn add_assign(&mut self, o: Self) {
+        self.camera_rays += o.camera_rays;
+        self.shadow_rays += o.shadow_rays;
+        self.mirror_rays += o.mirror_rays;
+        self.texture_fetches += o.texture_fetches;
+        self.perturbations += o.perturbations;
+        self.power_calls += o.power_calls;
+        self.cutout_tests += o.cutout_tests;
+        self.non_finite += o.non_finite;
+    }
+}

@@ -1,0 +1,101 @@
+//! What a slider can move. Three plain structs by cost: display, render, source.
+
+use serde::{Deserialize, Serialize};
+
+use super::Camera;
+use crate::math::LinearRgb;
+use crate::shading::{Light, Material};
+use crate::surface::mapping::MappingSettings;
+
+/// Changes of these re-encode the picture; nothing is traced or shaded.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct DisplaySettings {
+    /// Exposure in stops: the picture is multiplied by `2^exposure_ev` before sRGB encoding.
+    pub exposure_ev: f32,
+}
+
+/// Which reflection model turns light into colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ShadingModel {
+    /// Energy-conserving: Lambert `k_d/π` and modified Phong `k_s (s+2)/2π` (Lafortune & Willems 1994).
+    #[default]
+    Normalized,
+    /// The report's letter: `k_d` and `k_s` as they are (2.10–2.14 corrected).
+    Report,
+}
+
+impl ShadingModel {
+    /// Both, for menus and tests.
+    pub const ALL: [Self; 2] = [Self::Normalized, Self::Report];
+
+    /// Name in scene files and menus.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Normalized => "normalized",
+            Self::Report => "report",
+        }
+    }
+}
+
+/// What rays see that leave the scene: a vertical gradient along the camera's up direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Background {
+    /// Towards `up`.
+    pub top: LinearRgb,
+    /// Away from `up`. Equal to `top` for a plain colour.
+    pub bottom: LinearRgb,
+}
+
+impl Background {
+    /// One colour everywhere.
+    #[must_use]
+    pub const fn plain(color: LinearRgb) -> Self {
+        Self {
+            top: color,
+            bottom: color,
+        }
+    }
+}
+
+/// How light is gathered.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShadingSettings {
+    /// Reflection model.
+    pub model: ShadingModel,
+    /// Whether shadow rays are traced.
+    pub shadows: bool,
+    /// Mirror bounces at the most; 0 shows no reflections.
+    pub max_bounces: u32,
+    /// Behind everything.
+    pub background: Background,
+}
+
+impl Default for ShadingSettings {
+    fn default() -> Self {
+        Self {
+            model: ShadingModel::Normalized,
+            shadows: true,
+            max_bounces: 3,
+            background: Background::plain(LinearRgb::BLACK),
+        }
+    }
+}
+
+/// Changes of these render again.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RenderSettings {
+    /// Camera, world units.
+    pub camera: Camera,
+    /// Lights, world units; at most one of them ambient.
+    pub lights: Vec<Light>,
+    /// One per material index of the mesh.
+    pub materials: Vec<Material>,
+    /// Reflection model, shadows, mirrors, background.
+    pub shading: ShadingSettings,
+    /// Method and amplitude.
+    pub mapping: MappingSettings,
+    /// Samples a pixel gets before the picture counts as converged, at least 1.
+    pub samples: u32,
+}

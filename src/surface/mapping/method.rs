@@ -1,0 +1,147 @@
+//! The one list of methods that feeds the panel, the keys, the command line, the help and the tests.
+
+use serde::{Deserialize, Serialize};
+
+/// A way of perturbing a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// The mesh as it is.
+    None,
+    /// Normals tilted by a height map's slopes (Blinn 1978).
+    #[default]
+    Bump,
+    /// Slopes read from a slope map, the report's letter.
+    Slope,
+    /// Normals read from a tangent-space normal map.
+    Normal,
+    /// Texture coordinates shifted once by the height seen (report 2.17).
+    Parallax,
+    /// The same without the division that runs away at grazing angles (report 2.18).
+    ParallaxLimited,
+}
+
+/// What a method gets wrong, after Szirmay-Kalos & Umenhoffer 2008.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ErrorClass {
+    /// Nothing is perturbed.
+    Flat,
+    /// Only shading changes: no parallax, silhouette or relief shadow.
+    ShadingOnly,
+    /// May miss relief.
+    Unsafe,
+}
+
+impl ErrorClass {
+    /// One line for help and tooltips.
+    #[must_use]
+    pub const fn summary(self) -> &'static str {
+        match self {
+            Self::Flat => "no relief at all",
+            Self::ShadingOnly => "shading only: no parallax, no silhouette, no relief shadow",
+            Self::Unsafe => "unsafe: may miss relief; no silhouette, no relief shadow",
+        }
+    }
+}
+
+/// Everything the program says about a method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MethodInfo {
+    /// Name in scene files and on the command line.
+    pub name: &'static str,
+    /// Label in the window.
+    pub label: &'static str,
+    /// Number key that selects it.
+    pub key: char,
+    /// One sentence.
+    pub summary: &'static str,
+    /// What it gets wrong.
+    pub error_class: ErrorClass,
+    /// Where it comes from.
+    pub source: &'static str,
+}
+
+impl Method {
+    /// Every method in the order of the keys.
+    pub const ALL: [Self; 6] = [
+        Self::None,
+        Self::Bump,
+        Self::Slope,
+        Self::Normal,
+        Self::Parallax,
+        Self::ParallaxLimited,
+    ];
+
+    /// What the program says about it.
+    #[must_use]
+    pub const fn info(self) -> MethodInfo {
+        match self {
+            Self::None => MethodInfo {
+                name: "none",
+                label: "None",
+                key: '1',
+                summary: "The mesh with its smooth normals; maps of relief are not read.",
+                error_class: ErrorClass::Flat,
+                source: "the base line",
+            },
+            Self::Bump => MethodInfo {
+                name: "bump",
+                label: "Bump",
+                key: '2',
+                summary: "Tilts the normal by the slope of the height map.",
+                error_class: ErrorClass::ShadingOnly,
+                source: "Blinn 1978; report 2.15-2.16 in physical units",
+            },
+            Self::Slope => MethodInfo {
+                name: "slope",
+                label: "Slope map",
+                key: '3',
+                summary: "Tilts the normal by slopes stored in red and green; without such a map, by central differences of the height map.",
+                error_class: ErrorClass::ShadingOnly,
+                source: "report 2.4.2; derivative maps, Mikkelsen 2010",
+            },
+            Self::Normal => MethodInfo {
+                name: "normal",
+                label: "Normal map",
+                key: '4',
+                summary: "Takes the normal from a tangent-space normal map.",
+                error_class: ErrorClass::ShadingOnly,
+                source: "Cohen et al. 1998; report 2.4.2",
+            },
+            Self::Parallax => MethodInfo {
+                name: "parallax",
+                label: "Parallax",
+                key: '5',
+                summary: "Shifts the texture coordinate once, by the height it first sees.",
+                error_class: ErrorClass::Unsafe,
+                source: "Kaneko et al. 2001; report 2.17",
+            },
+            Self::ParallaxLimited => MethodInfo {
+                name: "parallax-limited",
+                label: "Parallax, limited",
+                key: '6',
+                summary: "Parallax whose shift never exceeds the height; flattens towards the horizon.",
+                error_class: ErrorClass::Unsafe,
+                source: "Welsh 2004; report 2.18",
+            },
+        }
+    }
+
+    /// Name in scene files and on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        self.info().name
+    }
+
+    /// The method with this name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|m| m.name() == name)
+    }
+
+    /// Whether it moves texture coordinates.
+    #[must_use]
+    pub const fn shifts_uv(self) -> bool {
+        matches!(self, Self::Parallax | Self::ParallaxLimited)
+    }
+}

@@ -1,0 +1,92 @@
+//! What a user can say about mapping, for all materials at once.
+
+use serde::{Deserialize, Serialize};
+
+use super::Method;
+
+/// Where the normal comes from once a parallax method has moved the texture coordinate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Lookup {
+    /// From the height map's slopes.
+    #[default]
+    Bump,
+    /// From the normal map.
+    Normal,
+}
+
+impl Lookup {
+    /// Both, for menus and tests.
+    pub const ALL: [Self; 2] = [Self::Bump, Self::Normal];
+
+    /// Name in scene files and menus.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Bump => "bump",
+            Self::Normal => "normal",
+        }
+    }
+}
+
+/// How slopes are taken from a height map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Derivative {
+    /// Exact derivative of the bilinear height.
+    #[default]
+    Analytic,
+    /// The report's central differences (2.15).
+    Central,
+}
+
+impl Derivative {
+    /// Both, for menus and tests.
+    pub const ALL: [Self; 2] = [Self::Analytic, Self::Central];
+
+    /// Name in scene files and menus.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Analytic => "analytic",
+            Self::Central => "central",
+        }
+    }
+}
+
+/// Mapping for the whole scene. A material's own amplitude or midlevel goes before these.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MappingSettings {
+    /// The method.
+    pub method: Method,
+    /// Normals at moved coordinates.
+    pub lookup: Lookup,
+    /// Slopes of `bump` and of parallax with bump look-up.
+    pub derivative: Derivative,
+    /// World units from stored height 0 to stored height 1, at least 0; `None` leaves each material its
+    /// default.
+    pub amplitude: Option<f64>,
+    /// Stored height that lies on the mesh: 1 cuts the relief inwards, 0 raises it.
+    pub midlevel: f32,
+    /// Whether height maps tilt normals.
+    pub use_height: bool,
+    /// Whether normal and slope maps tilt normals.
+    pub use_normal: bool,
+    /// Whether parallax methods move texture coordinates.
+    pub use_parallax: bool,
+}
+
+impl Default for MappingSettings {
+    fn default() -> Self {
+        Self {
+            method: Method::Bump,
+            lookup: Lookup::Bump,
+            derivative: Derivative::Analytic,
+            amplitude: None,
+            midlevel: 1.0,
+            use_height: true,
+            use_normal: true,
+            use_parallax: true,
+        }
+    }
+}

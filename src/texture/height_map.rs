@@ -1,0 +1,161 @@
+//! Heights, 16 bits each unless the file held floats; also used for opacity.
+
+use glam::Vec2;
+
+use super::{Channel, Grid, RawImage, Samples, Wrap};
+
+/// One number a texel. Integers stay `u16` in memory (8-bit ones are spread to 16), behind one accessor.
+#[derive(Debug, Clone, PartialEq)]
+pub enum HeightMap {
+    /// Fractions of 65535.
+    U16(Grid<u16>),
+    /// From float files, as stored.
+    F32(Grid<f32>),
+}
+
+/// A height and its derivatives across the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeightSlope {
+    /// Stored height, 0…1 for integer files.
+    pub height: f32,
+    /// Change per picture width to the right (s) and per picture height downwards (t).
+    pub slope_st: Vec2,
+}
+
+impl HeightMap {
+    /// Takes one channel out of a picture.
+    #[must_use]
+    pub fn from_image(image: &RawImage, channel: Channel) -> Self {
+        let (w, h) = (image.width, image.height);
+        if let (Samples::U16(samples), 1) = (&image.samples, image.channels)
+            && channel != Channel::Alpha
+        {
+            return Self::U16(Grid::new(w, h, samples.clone()));
+        }
+        let pixels = (0..h).flat_map(|y| (0..w).map(move |x| (x, y)));
+        let value = |(x, y)| channel_value(image, x, y, channel);
+        if matches!(image.samples, Samples::F32(_)) {
+            Self::F32(Grid::new(w, h, pixels.map(value).collect()))
+        } else {
+            let to_u16 = |f: f32| (f * 65_535.0 + 0.5) as u16;
+            Self::U16(Grid::new(w, h, pixels.map(value).map(to_u16).collect()))
+        }
+    }
+
+    /// Columns.
+    #[must_use]
+    pub const fn width(&self) -> u32 {
+        match self {
+            Self::U16(g) => g.width(),
+            Self::F32(g) => g.width(),
+        }
+    }
+
+    /// Rows.
+    #[must_use]
+    pub const fn height(&self) -> u32 {
+        match self {
+            Self::U16(g) => g.height(),
+            Self::F32(g) => g.height(),
+        }
+    }
+
+    /// Heap bytes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        match self {
+            Self::U16(g) => size_of_val(g.texels()),
+            Self::F32(g) => size_of_val(g.texels()),
+        }
+    }
+
+    /// Stored value of the texel in column `x`, row `y`.
+    ///
+    /// # Panics
+    /// If it is outside.
+    #[must_use]
+    pub fn texel(&self, x: u32, y: u32) -> f32 {
+        match self {
+            Self::U16(g) => fraction(g.at(x, y)),
+            Self::F32(g) => g.at(x, y),
+        }
+    }
+
+    /// Bilinear value at `st` (see [`Grid::cell`]).
+    #[must_use]
+    pub fn sample(&self, st: Vec2, wrap: Wrap) -> f32 {
+        match self {
+            Self::U16(g) => {
+                let cell = g.cell(st, wrap);
+                cell.mix(cell.texels.map(|i| fraction(g.texel(i))))
+            }
+            Self::F32(g) => {
+                let cell = g.cell(st, wrap);
+                cell.mix(cell.texels.map(|i| g.texel(i)))
+            }
+        }
+    }
+
+    /// Bilinear value and its analytic derivative: exact for the bilinear surface, discontinuous at
+    /// texel lines.
+    #[must_use]
+    pub fn sample_slope(&self, st: Vec2, wrap: Wrap) -> HeightSlope {
+        let (cell, corners) = match self {
+            Self::U16(g) => {
+                let cell = g.cell(st, wrap);
+                (cell, cell.texels.map(|i| fraction(g.texel(i))))
+            }
+            Self::F32(g) => {
+                let cell = g.cell(st, wrap);
+                (cell, cell.texels.map(|i| g.texel(i)))
+            }
+        };
+        HeightSlope {
+            height: cell.mix(corners),
+            slope_st: cell.slope_per_texel(corners) * self.size(),
+        }
+    }
+
+    /// The report's central differences (2.15), continuous between texels.
+    ///
+    /// Differences of the bilinear height one texel to either side equal the bilinear interpolation of
+    /// the texels' own central differences.
+    #[must_use]
+    pub fn sample_central(&self, st: Vec2, wrap: Wrap) -> HeightSlope {
+        let size = self.size();
+        let (ds, dt) = (Vec2::new(1.0 / size.x, 0.0), Vec2::new(0.0, 1.0 / size.y));
+        let right = self.sample(st + ds, wrap) - self.sample(st - ds, wrap);
+        let down = self.sample(st + dt, wrap) - self.sample(st - dt, wrap);
+        HeightSlope {
+            height: self.sample(st, wrap),
+            slope_st: Vec2::new(right, down) * 0.5 * size,
+        }
+    }
+
+    fn size(&self) -> Vec2 {
+        Vec2::new(self.width() as f32, self.height() as f32)
+    }
+}
+
+fn fraction(stored: u16) -> f32 {
+    f32::from(stored) * (1.0 / 65_535.0)
+}
+
+fn channel_value(image: &RawImage, x: u32, y: u32, channel: Channel) -> f32 {
+    let at = |c| image.fraction(x, y, c);
+    match (channel, image.is_color()) {
+        (Channel::Alpha, _) => image.alpha_channel().map_or(1.0, at),
+        (_, false) | (Channel::R, true) => at(0),
+        (Channel::G, true) => at(1),
+        (Channel::B, true) => at(2),
+        (Channel::Luma, true) => {
+            let (r, g, b) = (at(0), at(1), at(2));
+            // Equal channels must keep their exact value, which the weighted sum would round.
+            if r == g && g == b {
+                r
+            } else {
+                0.2126 * r + 0.7152 * g + 0.0722 * b
+            }
+        }
+    }
+}

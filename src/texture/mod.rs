@@ -1,0 +1,21 @@
+//! Pictures that lie on a surface: raw decoded images, typed maps, and how they are addressed.
+
+mod addressing;
+mod color_map;
+mod grid;
+mod height_map;
+mod image_store;
+mod normal_map;
+mod raw_image;
+mod slot;
+mod wrap;
+
+pub use addressing::Addressing;
+pub use color_map::ColorMap;
+pub use grid::{BilinearCell, Grid};
+pub use height_map::{HeightMap, HeightSlope};
+pub use image_store::MapImage;
+pub use normal_map::NormalMap;
+pub use raw_image::{RawImage, Samples};
+pub use slot::{Channel, MapRole, MapSlot};
+pub use wrap::Wrap;
