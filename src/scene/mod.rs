@@ -4,6 +4,7 @@ pub mod built_in;
 mod camera;
 pub mod file;
 pub mod load;
+mod open;
 mod settings;
 mod warning;
 
@@ -16,7 +17,8 @@ use crate::geometry::bvh::Bvh;
 use crate::geometry::{Normalization, TriangleMesh};
 use crate::texture::MapImage;
 
-pub use camera::Camera;
+pub use camera::{Camera, CameraAxes};
+pub use open::open;
 pub use settings::{Background, DisplaySettings, RenderSettings, ShadingModel, ShadingSettings};
 pub use warning::{LoadError, LoadWarning};
 

@@ -1,1 +1,7 @@
-//! From files to a scene.
+//! From files to a scene: OBJ and MTL text, pictures, and what they mean.
+
+mod materials;
+mod options;
+
+pub use materials::{LibraryRef, MaterialSet, load_materials};
+pub use options::{LoadMonitor, LoadOptions};
