@@ -1,1 +1,3 @@
 //! Scenes that the program generates.
+
+pub mod maps;
