@@ -27,23 +27,40 @@ pub fn texel_at(pattern: &dyn Pattern, [x, y]: [u32; 2], size: u32) -> Texel {
 /// Samples a pattern at texel centres. `amplitude` is the relief's depth from stored 0 to stored 1 as a
 /// fraction of the tile; the normal map is `normalize(−a·∂h/∂u, −a·∂h/∂v, 1)` of the exact derivatives.
 ///
+/// Bands of rows are shared among the processor's cores; each texel depends only on its place.
+///
 /// # Panics
 /// If `size` is 0.
 #[must_use]
 pub fn bake(pattern: &dyn Pattern, size: u32, amplitude: f64) -> MapSet {
     assert!(size > 0, "a picture has at least one texel");
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let rows_per_band = (size as usize).div_ceil(cores).max(1);
     let count = size as usize * size as usize;
-    let mut heights = Vec::with_capacity(count);
-    let mut normals = Vec::with_capacity(count * 3);
-    let mut colors = Vec::with_capacity(count * 3);
-    for y in 0..size {
-        for x in 0..size {
-            let texel = texel_at(pattern, [x, y], size);
-            heights.push((texel.height.value.clamp(0.0, 1.0) * 65_535.0 + 0.5) as u16);
-            normals.extend(encode_normal(texel.height, amplitude));
-            colors.extend(texel.paint.to_bytes());
+    let mut heights = vec![0_u16; count];
+    let mut normals = vec![[0_u8; 3]; count];
+    let mut colors = vec![[0_u8; 3]; count];
+    std::thread::scope(|scope| {
+        let texels_per_band = rows_per_band * size as usize;
+        let bands = heights
+            .chunks_mut(texels_per_band)
+            .zip(normals.chunks_mut(texels_per_band))
+            .zip(colors.chunks_mut(texels_per_band));
+        for (i, ((heights, normals), colors)) in bands.enumerate() {
+            scope.spawn(move || {
+                for (k, ((height, normal), color)) in
+                    heights.iter_mut().zip(normals).zip(colors).enumerate()
+                {
+                    let place = i * texels_per_band + k;
+                    let xy = [place as u32 % size, place as u32 / size];
+                    let texel = texel_at(pattern, xy, size);
+                    *height = (texel.height.value.clamp(0.0, 1.0) * 65_535.0 + 0.5) as u16;
+                    *normal = encode_normal(texel.height, amplitude);
+                    *color = texel.paint.to_bytes();
+                }
+            });
         }
-    }
+    });
     let image = |channels, samples| RawImage {
         width: size,
         height: size,
@@ -52,8 +69,8 @@ pub fn bake(pattern: &dyn Pattern, size: u32, amplitude: f64) -> MapSet {
     };
     MapSet {
         height: image(1, Samples::U16(heights)),
-        normal: image(3, Samples::U8(normals)),
-        albedo: image(3, Samples::U8(colors)),
+        normal: image(3, Samples::U8(normals.into_flattened())),
+        albedo: image(3, Samples::U8(colors.into_flattened())),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Layouts that divide a tile: scattered cells and courses of blocks.
 
 use super::dual::Dual;
+use super::exact::floor;
 use super::noise::unit;
 
 /// Points scattered over a tile, one in each square of an `n · n` lattice; the layout repeats.
@@ -79,7 +80,7 @@ impl Cells {
             let bisector = Dual::chain2(x, y, [inside, -nx, -ny]);
             edge = edge.smooth_min(bisector, rounding);
         }
-        let id = own.map(|c| (c.floor() as i64 - REACH as i64).rem_euclid(self.n as i64));
+        let id = own.map(|c| (floor(c) - REACH as i64).rem_euclid(self.n as i64));
         CellPlace { id, edge }
     }
 
@@ -133,9 +134,9 @@ pub struct BlockPlace {
 #[must_use]
 pub fn courses(u: Dual, v: Dual, [columns, rows]: [i64; 2], shift: f64) -> BlockPlace {
     let y = v * rows as f64;
-    let row = y.value.floor() as i64;
+    let row = floor(y.value);
     let x = u * columns as f64 + shift * row.rem_euclid(2) as f64;
-    let column = x.value.floor() as i64;
+    let column = floor(x.value);
     let (fx, fy) = (x.fract(), y.fract());
     BlockPlace {
         id: [column.rem_euclid(columns), row.rem_euclid(rows)],

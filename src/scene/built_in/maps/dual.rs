@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::exact::{exp_neg, sin_cos_turns};
+use super::exact::{exp_neg, floor, sin_cos_turns};
 
 /// A value with its partial derivatives by the two texture coordinates (forward-mode dual number).
 ///
@@ -98,7 +98,7 @@ impl Dual {
     /// The part above the next lower whole number, in `[0, 1)`.
     #[must_use]
     pub fn fract(self) -> Self {
-        self.chain(self.value - self.value.floor(), 1.0)
+        self.chain(self.value - floor(self.value) as f64, 1.0)
     }
 
     /// The smaller one.

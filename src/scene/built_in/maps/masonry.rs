@@ -9,7 +9,7 @@ use super::{Pattern, Texel};
 /// A brick wall: worn bricks in running bond with deep, sandy joints.
 #[derive(Debug)]
 pub struct Bricks {
-    warp: [Fbm; 2],
+    warp: [GradientNoise; 2],
     surface: Fbm,
     pits: GradientNoise,
     sand: Fbm,
@@ -36,7 +36,10 @@ impl Bricks {
     #[must_use]
     pub fn new() -> Self {
         Self {
-            warp: [Fbm::new([14, 14], 2, 101), Fbm::new([14, 14], 2, 111)],
+            warp: [
+                GradientNoise::new([20, 20], 101),
+                GradientNoise::new([20, 20], 111),
+            ],
             surface: Fbm::new([22, 34], 4, 121),
             pits: GradientNoise::new([64, 64], 131),
             sand: Fbm::new([90, 90], 2, 141),
@@ -47,8 +50,8 @@ impl Bricks {
 
 impl Pattern for Bricks {
     fn texel(&self, u: Dual, v: Dual) -> Texel {
-        let wu = u + self.warp[0].at(u, v) * 0.005;
-        let wv = v + self.warp[1].at(u, v) * 0.005;
+        let wu = u + self.warp[0].at(u, v) * 0.004;
+        let wv = v + self.warp[1].at(u, v) * 0.004;
         let block = courses(wu, wv, Self::LAYOUT, 0.5);
         let random = |salt| unit(block.id, Self::SEED + salt);
         let surface = self.surface.at(u, v);
@@ -63,7 +66,7 @@ impl Pattern for Bricks {
         let joint = sand * 0.16 + 0.14;
         let height = joint.lerp(top, body);
 
-        let stain = self.stain.at(u, v).value;
+        let stain = self.stain.value(u.value, v.value);
         let shade = 1.0 + 0.16 * (random(4) - 0.5) + 0.55 * surface.value + 0.22 * stain
             - 0.30 * pit.value
             + 0.10 * sand.value;
@@ -142,7 +145,9 @@ impl Pattern for Cobble {
         let bare = dome.smoothstep(0.18, 0.62).value;
         let shade = 0.94 + 0.24 * (random(2) - 0.5) + 0.55 * surface.value + 0.18 * earth.value;
         let paint = Paint::pick(&Self::PALETTE, random(1)).scaled(shade);
-        let moss = self.moss.at(u, v).smoothstep(-0.05, 0.30).value;
+        let moss = Dual::constant(self.moss.value(u.value, v.value))
+            .smoothstep(-0.05, 0.30)
+            .value;
         let ground = Self::EARTH
             .mix(Self::MOSS, moss)
             .scaled(0.95 + 0.8 * earth.value);
@@ -173,7 +178,7 @@ impl Tiles {
     pub fn new() -> Self {
         Self {
             surface: Fbm::new([8, 8], 3, 301),
-            veins: [Fbm::new([5, 5], 4, 311), Fbm::new([7, 7], 4, 321)],
+            veins: [Fbm::new([5, 5], 3, 311), Fbm::new([7, 7], 3, 321)],
             sand: Fbm::new([80, 80], 2, 331),
         }
     }
@@ -197,10 +202,10 @@ impl Pattern for Tiles {
 
         let dark = (block.id[0] + block.id[1]) % 2 == 1;
         // Every slab is cut from another place of the quarry.
-        let (ou, ov) = (u + random(3), v + random(4));
-        let vein = |f: &Fbm| 1.0 - (f.at(ou, ov).value.abs() * 14.0).min(1.0);
+        let (ou, ov) = (u.value + random(3), v.value + random(4));
+        let vein = |f: &Fbm| 1.0 - (f.value(ou, ov).abs() * 14.0).min(1.0);
         let vein = vein(&self.veins[0]).max(0.6 * vein(&self.veins[1]));
-        let cloud = self.veins[1].at(ov, ou).value;
+        let cloud = surface.value;
         let (stone, streak) = if dark {
             (Self::DARK, Paint::hex(0x9a9d98))
         } else {

@@ -2,6 +2,7 @@
 
 use super::cells::{Cells, courses};
 use super::dual::Dual;
+use super::exact::floor;
 use super::noise::{Fbm, unit};
 use super::paint::Paint;
 use super::{Pattern, Texel};
@@ -34,7 +35,7 @@ impl Pattern for Hammered {
         let d2 = self.dents.dents(u, v, 0.10);
         let bowl = (d2 * 1.25).smooth_min(Dual::constant(0.92), 0.12);
         let height = bowl + self.polish.at(u, v) * 0.012 + 0.05;
-        let patina = self.patina.at(u, v).value;
+        let patina = self.patina.value(u.value, v.value);
         Texel {
             height,
             paint: Self::DULL.mix(
@@ -88,13 +89,15 @@ impl Pattern for Rivets {
         let buckle = self.paint.at(u, v) * 0.05;
         let height = seam * 0.40 + dome + buckle * seam + grain * 0.02 + 0.08;
 
-        let rust = self.rust.at(u, v).value;
+        let rust = self.rust.value(u.value, v.value);
         let near_seam = 1.0 - border.smoothstep(0.0, 0.035).value;
         let near_rivet = 1.0 - d.smoothstep(Self::HEAD * 0.9, Self::HEAD * 1.9).value;
         let ring = near_rivet * d.smoothstep(Self::HEAD * 0.55, Self::HEAD).value;
         let amount = (1.15 * near_seam + 0.85 * ring + 2.6 * rust - 0.35).clamp(0.0, 1.0);
         let coat = Self::PAINT
-            .scaled(1.0 + 0.12 * (unit(plate.id, 71) - 0.5) + 0.25 * self.paint.at(u, v).value)
+            .scaled(
+                1.0 + 0.12 * (unit(plate.id, 71) - 0.5) + 0.25 * self.paint.value(u.value, v.value),
+            )
             .mix(
                 Self::STEEL,
                 0.55 * head.value * (cap.value - 0.75).max(0.0) * 4.0,
@@ -134,7 +137,7 @@ impl Tread {
 impl Pattern for Tread {
     fn texel(&self, u: Dual, v: Dual) -> Texel {
         let (x, y) = (u * 6.0, v * 6.0);
-        let even = (x.value.floor() as i64 + y.value.floor() as i64).rem_euclid(2) == 0;
+        let even = (floor(x.value) + floor(y.value)).rem_euclid(2) == 0;
         let (fx, fy) = (x.fract() - 0.5, y.fract() - 0.5);
         let diagonal = std::f64::consts::FRAC_1_SQRT_2;
         let (a, b) = ((fx + fy) * diagonal, (fx - fy) * diagonal);
@@ -145,7 +148,7 @@ impl Pattern for Tread {
         let stud = 1.0 - reach.smoothstep(0.40, 1.0);
         let rolled = self.rolled.at(u, v);
         let height = stud * 0.78 + rolled * 0.02 + 0.15;
-        let dirt = self.dirt.at(u, v).value;
+        let dirt = self.dirt.value(u.value, v.value);
         let foot = (1.0 - stud.value) * (1.0 - reach.smoothstep(0.9, 1.6).value);
         Texel {
             height,
@@ -216,7 +219,7 @@ impl Pattern for Medallion {
             + star * boss * 0.20
             + field * 0.015;
         let height = disc * (relief + 0.30) + 0.06;
-        let patina = self.patina.at(u, v).value;
+        let patina = self.patina.value(u.value, v.value);
         let high = ((height.value - 0.34) * 2.4).clamp(0.0, 1.0);
         Texel {
             height,

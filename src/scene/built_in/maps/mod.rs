@@ -27,7 +27,7 @@ pub struct Texel {
 }
 
 /// A material as a function of the tile coordinates: repeats after one tile in either direction.
-pub trait Pattern {
+pub trait Pattern: Sync {
     /// Height and colour at (u, v), v up.
     fn texel(&self, u: Dual, v: Dual) -> Texel;
 }
@@ -109,7 +109,7 @@ impl Relief {
             Self::Ripple => 0.030,
             Self::Hammered => 0.018,
             Self::Weave => 0.022,
-            Self::Terrain => 0.120,
+            Self::Terrain => 0.060,
             Self::OrangePeel => 0.008,
             Self::Rivets => 0.025,
             Self::Tread => 0.020,

@@ -1,6 +1,7 @@
 //! Hashes and periodic gradient noise.
 
 use super::dual::Dual;
+use super::exact::{floor, wrap};
 
 /// 64 well-mixed bits of a lattice point (finaliser of splitmix64; Steele, Lea & Flood 2014).
 #[must_use]
@@ -48,35 +49,64 @@ impl GradientNoise {
         Dual::chain2(x, y, self.lattice(x.value, y.value))
     }
 
+    /// The same without derivatives, for colours.
+    #[must_use]
+    pub fn value(&self, u: f64, v: f64) -> f64 {
+        let [px, py] = self.period;
+        let cell = self.cell(u * px as f64, v * py as f64);
+        let [a, b, c, d] = cell.ramps;
+        let (s, t) = (fade(cell.fx)[0], fade(cell.fy)[0]);
+        a + (b - a) * s + (c - a) * t + (a - b - c + d) * s * t
+    }
+
     /// Value and derivatives in lattice coordinates.
     fn lattice(&self, x: f64, y: f64) -> [f64; 3] {
-        let (fx, fy) = (x - x.floor(), y - y.floor());
-        let [px, py] = self.period;
-        let i0 = (x.floor() as i64).rem_euclid(px as i64) as usize;
-        let j0 = (y.floor() as i64).rem_euclid(py as i64) as usize;
-        let i1 = if i0 + 1 == px { 0 } else { i0 + 1 };
-        let j1 = if j0 + 1 == py { 0 } else { j0 + 1 };
-        let g = |i: usize, j: usize| self.gradients[j * px + i];
-        let (ga, gb, gc, gd) = (g(i0, j0), g(i1, j0), g(i0, j1), g(i1, j1));
-        let dot = |g: [f64; 2], dx: f64, dy: f64| g[0] * dx + g[1] * dy;
-        let a = dot(ga, fx, fy);
-        let b = dot(gb, fx - 1.0, fy);
-        let c = dot(gc, fx, fy - 1.0);
-        let d = dot(gd, fx - 1.0, fy - 1.0);
-        let ([s, ds], [t, dt]) = (fade(fx), fade(fy));
+        let cell = self.cell(x, y);
+        let ([a, b, c, d], [ga, gb, gc, gd]) = (cell.ramps, cell.gradients);
+        let ([s, ds], [t, dt]) = (fade(cell.fx), fade(cell.fy));
         let twist = a - b - c + d;
+        let st = s * t;
         let blend = |k: usize| {
-            ga[k]
-                + (gb[k] - ga[k]) * s
-                + (gc[k] - ga[k]) * t
-                + (ga[k] - gb[k] - gc[k] + gd[k]) * s * t
+            ga[k] + (gb[k] - ga[k]) * s + (gc[k] - ga[k]) * t + (ga[k] - gb[k] - gc[k] + gd[k]) * st
         };
         [
-            a + (b - a) * s + (c - a) * t + twist * s * t,
+            a + (b - a) * s + (c - a) * t + twist * st,
             blend(0) + ((b - a) + twist * t) * ds,
             blend(1) + ((c - a) + twist * s) * dt,
         ]
     }
+
+    #[inline]
+    fn cell(&self, x: f64, y: f64) -> Cell {
+        let (i, j) = (floor(x), floor(y));
+        let (fx, fy) = (x - i as f64, y - j as f64);
+        let [px, py] = self.period;
+        let (i0, j0) = (wrap(i, px), wrap(j, py));
+        let i1 = if i0 + 1 == px { 0 } else { i0 + 1 };
+        let j1 = if j0 + 1 == py { 0 } else { j0 + 1 };
+        let g = |i: usize, j: usize| self.gradients[j * px + i];
+        let gradients = [g(i0, j0), g(i1, j0), g(i0, j1), g(i1, j1)];
+        let ramp = |g: [f64; 2], dx: f64, dy: f64| g[0] * dx + g[1] * dy;
+        Cell {
+            fx,
+            fy,
+            gradients,
+            ramps: [
+                ramp(gradients[0], fx, fy),
+                ramp(gradients[1], fx - 1.0, fy),
+                ramp(gradients[2], fx, fy - 1.0),
+                ramp(gradients[3], fx - 1.0, fy - 1.0),
+            ],
+        }
+    }
+}
+
+/// Corner gradients and ramps of one lattice cell, and the place in it.
+struct Cell {
+    fx: f64,
+    fy: f64,
+    gradients: [[f64; 2]; 4],
+    ramps: [f64; 4],
 }
 
 /// Perlin's quintic and its derivative.
@@ -124,5 +154,14 @@ impl Fbm {
             .fold(Dual::constant(0.0), |sum, (noise, weight)| {
                 sum + noise.at(u, v) * *weight
             })
+    }
+
+    /// The same without derivatives, for colours.
+    #[must_use]
+    pub fn value(&self, u: f64, v: f64) -> f64 {
+        self.octaves
+            .iter()
+            .map(|(noise, weight)| noise.value(u, v) * weight)
+            .sum()
     }
 }

@@ -2,6 +2,7 @@
 
 use super::cells::Cells;
 use super::dual::Dual;
+use super::exact::floor;
 use super::noise::{Fbm, unit};
 use super::paint::Paint;
 use super::{Pattern, Texel};
@@ -42,7 +43,7 @@ impl Pattern for Waves {
             });
         let height = sum * (0.5 / 2.32) + 0.5;
         // Glaze runs off crests and gathers in hollows.
-        let thin = height.value + 0.25 * self.cloud.at(u, v).value;
+        let thin = height.value + 0.25 * self.cloud.value(u.value, v.value);
         Texel {
             height,
             paint: Self::DEEP.mix(Self::CREST, thin),
@@ -103,7 +104,7 @@ impl Weave {
 impl Pattern for Weave {
     fn texel(&self, u: Dual, v: Dual) -> Texel {
         let (x, y) = (u * Self::COUNT, v * Self::COUNT);
-        let cell = [x.value.floor() as i64, y.value.floor() as i64];
+        let cell = [floor(x.value), floor(y.value)];
         let side = if (cell[0] + cell[1]).rem_euclid(2) == 0 {
             1.0
         } else {
@@ -175,7 +176,7 @@ impl Pattern for Terrain {
             amplitude *= 0.5;
         }
         let height = sum * (0.95 / total) + 0.02;
-        let patches = self.patches.at(u, v).value;
+        let patches = self.patches.value(u.value, v.value);
         let steep = (height.du * height.du + height.dv * height.dv).sqrt();
         let green = Self::GRASS.mix(Self::MEADOW, 0.5 + 2.0 * patches);
         let rock = Self::ROCK.scaled(1.0 + 0.8 * patches);
@@ -220,7 +221,7 @@ impl Pattern for OrangePeel {
             .max(Dual::constant(0.0))
             .exp_neg();
         let height = 0.74 - pore * 0.5 + self.swell.at(u, v) * 0.42;
-        let cloud = self.cloud.at(u, v).value;
+        let cloud = self.cloud.value(u.value, v.value);
         Texel {
             height,
             paint: Self::BASE.scaled(1.0 + 0.16 * cloud - 0.10 * pore.value),
