@@ -72,7 +72,7 @@ impl Cells {
             let (rx, ry) = (p[0] - own[0], p[1] - own[1]);
             let length = (rx * rx + ry * ry).sqrt();
             // The own point and those too far away to touch the border.
-            if length < 1e-9 || length > 3.0 {
+            if !(1e-9..=3.0).contains(&length) {
                 continue;
             }
             let (nx, ny) = (rx / length, ry / length);

@@ -117,6 +117,15 @@ impl Relief {
         }
     }
 
+    /// Texels a side that show its finest detail.
+    #[must_use]
+    pub const fn resolution(self) -> u32 {
+        match self {
+            Self::Bricks => 1024,
+            _ => 512,
+        }
+    }
+
     /// The function behind it, with its noise prepared.
     #[must_use]
     pub fn pattern(self) -> Box<dyn Pattern> {
