@@ -90,4 +90,15 @@ impl Bvh {
     pub const fn is_empty(&self) -> bool {
         self.triangles == 0
     }
+
+    /// Whether both have the same nodes and leaves in the same order.
+    #[must_use]
+    pub fn same_tree(&self, other: &Self) -> bool {
+        let same_blocks = |a: &[Block], b: &[Block]| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.same_triangles(b))
+        };
+        self.root == other.root
+            && self.nodes == other.nodes
+            && same_blocks(&self.blocks, &other.blocks)
+    }
 }

@@ -48,7 +48,7 @@ impl ChildRef {
 }
 
 /// Up to eight children and their boxes: four cache lines.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 #[repr(C, align(64))]
 pub(super) struct Node {
     /// `[axis][lower, upper][lane]`; unused lanes are empty boxes, which every ray misses.
@@ -153,6 +153,12 @@ impl Block {
         self.corners
             .each_ref()
             .map(|[x, y, z]| Vec3::new(x[lane], y[lane], z[lane]))
+    }
+
+    /// Whether the same triangles are in the same lanes.
+    pub(super) fn same_triangles(&self, other: &Self) -> bool {
+        // Not `==`: unused lanes hold NaN.
+        self.prims == other.prims && self.triangles().eq(other.triangles())
     }
 
     /// The used lanes: triangle indices and corners.
