@@ -1,6 +1,7 @@
 //! Reliefscope.
 pub mod geometry;
 pub mod math;
+pub mod measure;
 pub mod render;
 pub mod scene;
 pub mod shading;
