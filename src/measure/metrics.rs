@@ -3,8 +3,8 @@
 //! Linear values are compared as they are; PSNR and SSIM take what a screen would show at exposure 0:
 //! clipped to `[0, 1]` and sRGB-encoded, not rounded to bytes.
 
-use super::Picture;
 use crate::math::{LinearRgb, srgb_from_linear};
+use crate::render::Picture;
 
 /// How far two pictures of one size are apart. All figures are symmetric in the two.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,13 +29,14 @@ pub struct SizeMismatch(pub [u32; 2], pub [u32; 2]);
 /// # Errors
 /// [`SizeMismatch`].
 pub fn distance(a: &Picture, b: &Picture) -> Result<Distance, SizeMismatch> {
-    if a.size() != b.size() {
-        return Err(SizeMismatch(a.size(), b.size()));
+    let (size_a, size_b) = ([a.width, a.height], [b.width, b.height]);
+    if size_a != size_b || a.pixels.len() != b.pixels.len() {
+        return Err(SizeMismatch(size_a, size_b));
     }
     let (shown_a, shown_b) = (shown_planes(a), shown_planes(b));
     let planes = || shown_a.iter().zip(&shown_b);
     let shown_mse = planes().map(|(x, y)| mean_square(x, y)).sum::<f64>() / 3.0;
-    let width = a.size()[0] as usize;
+    let width = (a.width as usize).max(1);
     Ok(Distance {
         linear_rmse: linear_mse(a, b).sqrt(),
         linear_max: linear_max(a, b),
@@ -52,7 +53,7 @@ pub fn psnr_db(mse: f64) -> f64 {
 
 fn linear_mse(a: &Picture, b: &Picture) -> f64 {
     let square = |x: f32, y: f32| (f64::from(x) - f64::from(y)).powi(2);
-    channel_pairs(a, b).map(|(x, y)| square(x, y)).sum::<f64>() / (a.pixels().len() * 3) as f64
+    channel_pairs(a, b).map(|(x, y)| square(x, y)).sum::<f64>() / (a.pixels.len() * 3) as f64
 }
 
 fn linear_max(a: &Picture, b: &Picture) -> f64 {
@@ -66,15 +67,15 @@ fn linear_max(a: &Picture, b: &Picture) -> f64 {
 
 fn channel_pairs<'a>(a: &'a Picture, b: &'a Picture) -> impl Iterator<Item = (f32, f32)> + 'a {
     let channels = |p: &LinearRgb| p.to_array();
-    let left = a.pixels().iter().flat_map(channels);
-    left.zip(b.pixels().iter().flat_map(channels))
+    let left = a.pixels.iter().flat_map(channels);
+    left.zip(b.pixels.iter().flat_map(channels))
 }
 
 /// Red, green and blue of what a screen shows, 0…1.
 fn shown_planes(picture: &Picture) -> [Vec<f64>; 3] {
     [0, 1, 2].map(|channel| {
         let shown = |p: &LinearRgb| f64::from(srgb_from_linear(p.to_array()[channel]));
-        picture.pixels().iter().map(shown).collect()
+        picture.pixels.iter().map(shown).collect()
     })
 }
 
@@ -172,7 +173,11 @@ mod tests {
         let [w, h] = SIZE;
         let pixel = &pixel;
         let pixels = (0..h).flat_map(|y| (0..w).map(move |x| pixel(x, y)));
-        Picture::new(SIZE, pixels.collect())
+        Picture {
+            width: w,
+            height: h,
+            pixels: pixels.collect(),
+        }
     }
 
     fn noise(seed: u32) -> Picture {
@@ -238,7 +243,7 @@ mod tests {
 
     #[test]
     fn pictures_of_two_sizes_are_refused() {
-        let small = Picture::new([1, 1], vec![LinearRgb::BLACK]);
+        let small = Picture::black([1, 1]);
         let error = distance(&noise(1), &small).unwrap_err();
         assert_eq!(
             error.to_string(),

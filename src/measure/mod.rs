@@ -4,4 +4,4 @@ pub mod metrics;
 mod picture;
 pub mod report_equations;
 
-pub use picture::Picture;
+pub use picture::{picture_from_image, read_picture};

@@ -2,4 +2,5 @@
 
 mod layering;
 mod metrics;
+mod oracle;
 mod reference;

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use reliefscope::measure::{Picture, metrics};
+use reliefscope::measure::{metrics, read_picture};
+use reliefscope::render::Picture;
 
 fn reference(name: &str) -> Picture {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reference");
-    Picture::read(&root.join(name)).expect("the reference picture can be read")
+    read_picture(&root.join(name)).expect("the reference picture can be read")
 }
 
 /// Linear RMSE, PSNR and SSIM to the displaced mesh, from tests/data/reference/README.md.
@@ -27,6 +28,6 @@ fn published_distances_to_the_displaced_plane_are_met() {
 
 #[test]
 fn a_missing_picture_is_an_error_that_names_it() {
-    let error = Picture::read(Path::new("no/such/picture.exr")).unwrap_err();
+    let error = read_picture(Path::new("no/such/picture.exr")).unwrap_err();
     assert!(error.to_string().contains("picture.exr"), "{error}");
 }

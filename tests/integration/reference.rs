@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use reliefscope::measure::{Picture, metrics};
-use reliefscope::render::{PassEnd, Progressive, Snapshot};
+use reliefscope::measure::{metrics, read_picture};
+use reliefscope::render::{PassEnd, Picture, Progressive, Snapshot};
 use reliefscope::scene::load::LoadOptions;
 
 fn data(name: &str) -> PathBuf {
@@ -26,12 +26,12 @@ fn rendered(scene_file: &str) -> Picture {
     while !renderer.is_converged() {
         assert_eq!(renderer.pass(&|| false), PassEnd::Complete);
     }
-    assert_eq!(renderer.film().samples(), 64);
-    Picture::from_film(renderer.film())
+    assert_eq!(renderer.samples(), 64);
+    renderer.picture()
 }
 
 fn assert_psnr(scene_file: &str, truth: &str, at_least_db: f64) {
-    let truth = Picture::read(&data(truth)).expect("the reference picture can be read");
+    let truth = read_picture(&data(truth)).expect("the reference picture can be read");
     let distance = metrics::distance(&rendered(scene_file), &truth).expect("sizes agree");
     assert!(
         distance.psnr_db >= at_least_db,
