@@ -173,7 +173,7 @@ fn highlights_are_powers_of_the_cosine() {
     for case in 0..20_000 {
         let n = rounded(random.direction());
         let l = rounded(random.direction_above(n, 1e-3));
-        let exponent = random.between(-1.0, 6.0).exp2().powi(3);
+        let exponent = random.between(-3.0, 20.0).exp2();
         // Close to the mirror image, where there is something to see.
         let spread = (2.0 / (exponent + 1.0)).sqrt();
         let v = rounded((report::reflect(n, l) + random.point() * spread).normalize());
@@ -181,8 +181,9 @@ fn highlights_are_powers_of_the_cosine() {
         assert!((r.as_dvec3() - report::reflect(n, l)).length() < 1e-6);
         let expected = report::specular_share(n, l, v, exponent);
         let found = phong_lobe(r, v.as_vec3(), exponent as f32).unwrap_or(0.0);
-        // A cosine that is off by 2·10⁻⁷ is magnified by the exponent.
-        let tolerance = 1e-5 + 3e-7 * exponent;
+        // A cosine that is off by a few roundings is magnified by the exponent, until the sharp form takes
+        // over.
+        let tolerance = (1e-5 + 5e-7 * exponent).min(5e-3);
         assert!(
             (f64::from(found) - expected).abs() < tolerance,
             "case {case}: {found} is not {expected} for s = {exponent}"
