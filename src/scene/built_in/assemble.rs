@@ -48,8 +48,8 @@ pub fn assemble(
     }
 }
 
-fn build_tree(_mesh: &TriangleMesh) -> Bvh {
-    Bvh
+fn build_tree(mesh: &TriangleMesh) -> Bvh {
+    Bvh::build(mesh)
 }
 
 /// Corners of the box around used vertices.
