@@ -40,7 +40,7 @@ pub fn assemble(
     Scene {
         name: name.to_owned(),
         source,
-        bvh: build_tree(&internal),
+        bvh: Bvh::build(&internal),
         mesh: internal,
         normalization,
         images,
