@@ -1,5 +1,7 @@
 //! One binary for all integration tests, so that they link once.
 
+#![expect(clippy::unwrap_used, reason = "a test that panics has failed")]
+
 mod bvh;
 mod layering;
 mod mapping;
