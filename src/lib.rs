@@ -1,4 +1,5 @@
 //! Reliefscope.
+pub mod cli;
 pub mod geometry;
 pub mod math;
 pub mod measure;
