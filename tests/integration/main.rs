@@ -2,8 +2,10 @@
 
 mod bvh;
 mod layering;
+mod mapping;
 mod metrics;
 mod numerics;
-mod oracle;
+mod progressive;
 mod reference;
 mod shapes;
+mod support;
