@@ -7,6 +7,7 @@ mod layering;
 mod mapping;
 mod metrics;
 mod numerics;
+mod oracle;
 mod progressive;
 mod reference;
 mod shapes;
