@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that panics has failed")]
 
+mod built_in;
 mod bvh;
 mod layering;
 mod mapping;

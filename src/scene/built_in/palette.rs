@@ -42,8 +42,8 @@ impl Finish {
     #[must_use]
     pub const fn metal(tint: LinearRgb, shininess: f32) -> Self {
         Self {
-            kd: LinearRgb::gray(0.75),
-            ks: LinearRgb::new(0.2 * tint.r, 0.2 * tint.g, 0.2 * tint.b),
+            kd: LinearRgb::gray(0.62),
+            ks: LinearRgb::new(0.3 * tint.r, 0.3 * tint.g, 0.3 * tint.b),
             shininess,
             reflectivity: 0.0,
         }

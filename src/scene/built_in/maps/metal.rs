@@ -94,14 +94,12 @@ impl Pattern for Rivets {
         let near_rivet = 1.0 - d.smoothstep(Self::HEAD * 0.9, Self::HEAD * 1.9).value;
         let ring = near_rivet * d.smoothstep(Self::HEAD * 0.55, Self::HEAD).value;
         let amount = (1.15 * near_seam + 0.85 * ring + 2.6 * rust - 0.35).clamp(0.0, 1.0);
-        let coat = Self::PAINT
-            .scaled(
-                1.0 + 0.12 * (unit(plate.id, 71) - 0.5) + 0.25 * self.paint.value(u.value, v.value),
-            )
-            .mix(
-                Self::STEEL,
-                0.55 * head.value * (cap.value - 0.75).max(0.0) * 4.0,
-            );
+        // Plates differ in tint, except where they meet.
+        let batch = 0.12 * (unit(plate.id, 71) - 0.5) * seam.value;
+        let coat = Self::PAINT.scaled(1.0 + batch + 5.0 * buckle.value).mix(
+            Self::STEEL,
+            0.55 * head.value * (cap.value - 0.75).max(0.0) * 4.0,
+        );
         let rusty = Self::RUST
             .mix(Self::DEEP_RUST, 0.5 - 1.6 * rust)
             .scaled(1.0 + 0.8 * grain.value);

@@ -105,7 +105,7 @@ impl Relief {
             Self::Bricks => 0.020,
             Self::Cobble => 0.040,
             Self::Tiles => 0.012,
-            Self::Waves => 0.040,
+            Self::Waves => 0.060,
             Self::Ripple => 0.030,
             Self::Hammered => 0.022,
             Self::Weave => 0.022,

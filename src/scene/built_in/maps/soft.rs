@@ -184,7 +184,7 @@ impl Pattern for Terrain {
             rock,
             steep * 0.30 - 0.45 + 2.2 * (height.value - 0.45) + patches,
         );
-        let snow = (height.value - 0.70 + 0.25 * patches) * 10.0 - 0.10 * (steep - 6.0).max(0.0);
+        let snow = (height.value - 0.72 + 0.15 * patches) * 7.0 - 0.04 * (steep - 9.0).max(0.0);
         Texel {
             height,
             paint: land.mix(Self::SNOW, snow),

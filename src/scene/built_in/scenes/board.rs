@@ -30,7 +30,7 @@ pub fn materials() -> Stage {
     Stage {
         mesh,
         palette,
-        camera: camera([-0.9, -5.6, 0.25], [0.02, 0.0, -0.02], 36.5),
+        camera: camera([-0.9, -5.9, 0.25], [0.0, 0.0, -0.02], 36.5),
         lights: vec![
             ambient([0.80, 0.88, 1.0], 0.26),
             sun([0.66, 0.62, -0.46], [1.0, 0.90, 0.76], 4.2),

@@ -18,7 +18,7 @@ pub fn columns() -> Stage {
     let stone = palette.relief(
         Relief::OrangePeel,
         STONE_TILE,
-        Finish::glossy(0.03, 20.0).tinted(LinearRgb::new(0.95, 0.90, 0.80)),
+        Finish::glossy(0.03, 20.0).tinted(LinearRgb::new(0.80, 0.75, 0.66)),
     );
     let tiles = palette.relief(
         Relief::Tiles,
@@ -35,7 +35,7 @@ pub fn columns() -> Stage {
     let cane = palette.relief(Relief::Weave, 0.55, Finish::glossy(0.05, 15.0));
     let bronze = palette.relief(
         Relief::Medallion,
-        1.2,
+        0.88,
         Finish::metal(LinearRgb::new(1.0, 0.80, 0.50), 40.0).mirroring(0.10),
     );
 
@@ -52,10 +52,10 @@ pub fn columns() -> Stage {
     let beam = bevelled_box(DVec3::new(3.2, 0.42, 0.30), 0.03, STONE_TILE, stone);
     mesh.append(beam.placed(at(DVec3::new(0.0, 1.0, 3.42))));
     let upright = DQuat::from_rotation_x(FRAC_PI_2);
-    let medal = disc(0.60, 96, bronze);
+    let medal = disc(0.44, 96, bronze);
     mesh.append(medal.placed(DAffine3::from_rotation_translation(
         upright,
-        DVec3::new(0.56, 2.19, 1.42),
+        DVec3::new(-1.33, 2.19, 1.50),
     )));
     let crate_box = bevelled_box(DVec3::splat(0.45), 0.02, 0.9, steel);
     mesh.append(crate_box.placed(DAffine3::from_rotation_translation(

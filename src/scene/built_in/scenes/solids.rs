@@ -23,7 +23,7 @@ pub fn torus() -> Stage {
     let copper = palette.relief(
         Relief::Hammered,
         0.6,
-        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 24.0).mirroring(0.14),
+        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 24.0).mirroring(0.20),
     );
     let mut mesh = floor(14.0, 2.6, tiles);
     let ring = meshes::torus([1.0, 0.42], [160, 80], [7.0, 3.0], cobble);
@@ -54,7 +54,7 @@ pub fn sphere() -> Stage {
     let copper = palette.relief(
         Relief::Hammered,
         1.05,
-        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 26.0).mirroring(0.14),
+        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 26.0).mirroring(0.20),
     );
     let cane = palette.relief(Relief::Weave, 0.62, Finish::glossy(0.05, 15.0));
     let glaze = palette.relief(
@@ -90,7 +90,7 @@ pub fn sphere() -> Stage {
             sun([0.70, 0.42, -0.58], [1.0, 0.86, 0.68], 5.0),
             lamp("Lamp", [2.6, -2.4, 2.2], [0.55, 0.72, 1.0], 6.0),
         ],
-        background: sky([0.12, 0.30, 0.72], [1.05, 0.86, 0.64]),
+        background: sky([0.05, 0.22, 0.72], [0.95, 0.90, 0.86]),
         exposure_ev: 0.0,
     }
 }

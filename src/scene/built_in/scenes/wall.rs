@@ -20,12 +20,12 @@ pub fn wall() -> Stage {
     let stone = palette.relief(
         Relief::OrangePeel,
         STONE,
-        Finish::MATTE.tinted(LinearRgb::new(0.78, 0.72, 0.63)),
+        Finish::MATTE.tinted(LinearRgb::new(0.52, 0.47, 0.40)),
     );
     let copper = palette.relief(
         Relief::Hammered,
         0.5,
-        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 24.0).mirroring(0.14),
+        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 24.0).mirroring(0.12),
     );
 
     let mut mesh = WorldMesh::default();
@@ -55,11 +55,11 @@ pub fn wall() -> Stage {
     Stage {
         mesh,
         palette,
-        camera: camera([-1.35, -3.95, 1.35], [0.50, -0.3, 1.02], 38.0),
+        camera: camera([-1.45, -4.25, 1.42], [0.45, -0.3, 0.98], 39.0),
         lights: vec![
-            ambient([0.62, 0.78, 1.0], 0.22),
-            sun([0.86, 0.26, -0.40], [1.0, 0.84, 0.62], 9.0),
-            lamp("Lamp", [2.70, -0.55, 1.55], [0.45, 0.66, 1.0], 2.6),
+            ambient([0.62, 0.78, 1.0], 0.18),
+            sun([0.86, 0.26, -0.40], [1.0, 0.84, 0.62], 7.8),
+            lamp("Lamp", [2.95, -0.95, 1.75], [0.42, 0.68, 1.0], 2.2),
         ],
         background: sky([0.25, 0.42, 0.75], [0.55, 0.45, 0.36]),
         exposure_ev: 0.0,
