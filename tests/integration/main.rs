@@ -1,5 +1,6 @@
 //! Every test that needs more than one room, in one binary: one link.
 
 mod bvh;
+mod load_mtl;
 mod numerics;
 mod shapes;

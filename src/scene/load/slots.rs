@@ -216,13 +216,10 @@ fn relief(map: &PlacedMap<'_>, image: &MapImage, set: &mut SlotSet) -> Candidate
             remark("is grey; read as heights, not as normals");
             (MapRole::Height, "grey, so heights")
         }
-        (MapKind::Norm, Look::Normals) => (MapRole::Normal, "normals, +Y up"),
+        (MapKind::Norm, Look::Normals) => (MapRole::Normal, "normals"),
         (MapKind::Norm, Look::Color) => {
             remark("does not look like a normal map; read as one all the same");
-            (
-                MapRole::Normal,
-                "normals, +Y up, though it does not look so",
-            )
+            (MapRole::Normal, "normals, though it does not look so")
         }
         (_, Look::Normals) => {
             remark("looks like a normal map; read as one, not as heights");
