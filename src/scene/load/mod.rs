@@ -1,6 +1,7 @@
 //! From files to a scene: OBJ and MTL text, pictures, and what they mean.
 
 mod amplitude;
+mod compare;
 mod library;
 mod lookup;
 mod map_statement;

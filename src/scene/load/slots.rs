@@ -1,7 +1,8 @@
 //! From map statements to slots: which picture means what, in which order, and why.
 
+use super::compare::compare;
 use super::map_statement::{ImfChannel, MapKind, MapOptions, MapStatement};
-use super::recognise::{Look, compare, describe_heights, describe_picture, look_of};
+use super::recognise::{Look, describe_heights, describe_picture, look_of};
 use crate::texture::{Channel, MapImage, MapRole, MapSlot, RawImage, Wrap};
 
 /// A statement whose picture was found and decoded.

@@ -185,7 +185,13 @@ fn holes_come_from_a_mask_or_from_alpha() {
         "newmtl mask\nmap_d mask.png\nnewmtl alpha\nmap_d alpha.png\nnewmtl both\nmap_Kd leaf.png\nmap_d leaf.png\n\
          newmtl chosen\nmap_d -imfchan r leaf.png\nnewmtl solid\nmap_d solid.png\nnewmtl tr\nmap_Tr mask.png\n",
     );
-    let hole = |x: u32, y: u32| if (x / 8 + y / 8) % 2 == 0 { 0 } else { 255 };
+    let hole = |x: u32, y: u32| {
+        if (x / 8 + y / 8).is_multiple_of(2) {
+            0
+        } else {
+            255
+        }
+    };
     fixture.rgb("mask.png", |x, y| [hole(x, y); 3]);
     fixture.rgb("solid.png", |_, _| [255; 3]);
     let rgba = |name: &str, color: fn(u32, u32) -> [u8; 3]| {

@@ -82,22 +82,3 @@ fn every_map_is_found_and_recognised() {
         "{pairs} pairs, {normals} normal maps"
     );
 }
-#[test]
-fn zz_probe() {
-    use reliefscope::scene::load::{fill_default_amplitudes};
-    use reliefscope::geometry::*;
-    let set = load("sponza.mtl").unwrap();
-    for m in &set.materials { for s in &m.maps { if s.role==MapRole::Normal {println!("{} {:?} en={} flip={} {}", m.name, s.role, s.enabled, s.flip_green, s.note); }} }
-    let mut text=String::new();
-    for n in ["bricks","cobble","hammered","medallion","rivets","terrain","waves"] { for b in [8,16] { text+=&format!("newmtl {n}{b}\nbump /work/shared/models/maps/{n}_height{b}.png\nnorm /work/shared/models/maps/{n}_normal.png\n"); } }
-    std::fs::write("/tmp/zz.mtl", text).unwrap();
-    let mut mesh=TriangleMesh::default();
-    let mut used=vec![];
-    for n in ["bricks","cobble","hammered","medallion","rivets","terrain","waves"] { for b in [8,16] { used.push((format!("{n}{b}").into_bytes(),1)); } }
-    for i in 0..used.len() { mesh.indices.push([0,1,2]); mesh.attributes.push(TriangleAttributes{material:i as u16,has_uv:true,smooth:false}); }
-    mesh.positions=vec![glam::Vec3::ZERO,glam::Vec3::X,glam::Vec3::Y]; mesh.uvs=mesh.positions.iter().map(|p|p.truncate()).collect();
-    let mut set=load_materials(&[LibraryRef{name:b"/tmp/zz.mtl".to_vec(),model:"/tmp/x.obj".into(),line:1}],&used,&LoadOptions::default()).unwrap();
-    fill_default_amplitudes(&mut set.materials,&set.images,&mesh,&Normalization::IDENTITY);
-    for m in &set.materials { println!("{} {}", m.name, m.map(MapRole::Normal).unwrap().note); }
-    for w in &set.warnings { println!("{w}"); }
-}
