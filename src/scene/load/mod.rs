@@ -2,6 +2,7 @@
 
 mod amplitude;
 mod compare;
+mod grey_floats;
 mod library;
 mod lookup;
 mod map_statement;
