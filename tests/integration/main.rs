@@ -2,12 +2,14 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that panics has failed")]
 
+mod answers;
 mod bvh;
+mod golden;
 mod layering;
+mod load_obj;
 mod mapping;
 mod metrics;
 mod numerics;
-mod oracle;
 mod progressive;
 mod reference;
 mod shapes;
