@@ -2,6 +2,7 @@
 pub mod cli;
 pub mod geometry;
 pub mod math;
+pub mod measure;
 pub mod render;
 pub mod scene;
 pub mod shading;

@@ -31,7 +31,7 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
             counters.non_finite
         ));
     }
-    let samples = renderer.film().samples();
+    let samples = renderer.samples();
     let line = closing_line(size, samples, secs, counters.rays());
     output::answer(&format!("{}: {line}", options.output.display()))
 }
@@ -39,33 +39,30 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
 /// Renders until every pixel has its samples; returns the counts of all passes.
 fn converge(renderer: &mut Progressive, snapshot: Snapshot) -> Counters {
     let progress = Progress::new(snapshot.settings.samples);
-    let mut counters = Counters::default();
     renderer.start(snapshot);
     while !renderer.is_converged() {
         if renderer.pass(&|| false) == PassEnd::Stopped {
             break;
         }
-        counters += renderer.report().counters;
-        progress.reached(renderer.film().samples());
+        progress.reached(renderer.samples());
     }
     progress.finish();
-    counters
+    renderer.counters()
 }
 
 fn save(renderer: &Progressive, options: &RenderOptions, exposure_ev: f32) -> Result<(), CliError> {
-    let film = renderer.film();
-    let [width, height] = film.size();
+    let picture = renderer.picture();
+    let size = [picture.width, picture.height];
     let written = match options.format {
         PictureFormat::Png => {
-            let mut rgba = vec![[0; 4]; width as usize * height as usize];
+            let mut rgba = vec![[0; 4]; picture.pixels.len()];
             renderer.encode_into(exposure_ev, &mut rgba);
             let rgb: Vec<_> = rgba.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
-            write_png(&options.output, film.size(), &rgb)
+            write_png(&options.output, size, &rgb)
         }
         PictureFormat::Exr => {
-            let rows = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-            let means: Vec<_> = rows.map(|(x, y)| film.mean(x, y).to_array()).collect();
-            write_exr(&options.output, film.size(), &means)
+            let linear: Vec<_> = picture.pixels.iter().map(|c| c.to_array()).collect();
+            write_exr(&options.output, size, &linear)
         }
     };
     written.map_err(CliError::Picture)

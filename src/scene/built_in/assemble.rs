@@ -40,16 +40,12 @@ pub fn assemble(
     Scene {
         name: name.to_owned(),
         source,
-        bvh: build_tree(&internal),
+        bvh: Bvh::build(&internal),
         mesh: internal,
         normalization,
         images,
         facts,
     }
-}
-
-fn build_tree(mesh: &TriangleMesh) -> Bvh {
-    Bvh::build(mesh)
 }
 
 /// Corners of the box around used vertices.

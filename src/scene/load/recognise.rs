@@ -206,7 +206,7 @@ impl AxisSums {
 /// to be square on the surface, as programs that make normal maps from heights do.
 fn central_slope(map: &HeightMap, at: Vec2, slot: &MapSlot) -> [f64; 2] {
     let size = Vec2::new(map.width() as f32, map.height() as f32);
-    let slope = map.sample_central(at, slot.wrap).slope_st;
+    let slope = map.central_slope(at, slot.wrap);
     let per_texel = slope / size;
     let side = f64::from((size.x * size.y).sqrt());
     [f64::from(per_texel.x) * side, f64::from(per_texel.y) * side]
