@@ -8,9 +8,12 @@ pub mod bvh;
 mod mesh;
 mod normalization;
 mod ray;
+mod slabs;
 pub mod triangle;
 
 pub use aabb::Aabb;
+pub use bvh::Bvh;
 pub use mesh::{TriangleAttributes, TriangleMesh};
 pub use normalization::Normalization;
 pub use ray::{Hit, OriginRule, Ray, offset_origin};
+pub use slabs::RaySlabs;
