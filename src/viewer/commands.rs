@@ -110,7 +110,12 @@ pub fn table() -> Vec<CommandInfo> {
         row(C::Undo, G::Edit, "Undo", &[ctrl(Key::Z)]),
         row(C::Redo, G::Edit, "Redo", &[CTRL_SHIFT_Z, ctrl(Key::Y)]),
         row(C::FrameModel, G::View, "Frame the model", &[plain(Key::F)]),
-        row(C::TogglePanel, G::View, "Hide or show the panel", &[plain(Key::H)]),
+        row(
+            C::TogglePanel,
+            G::View,
+            "Hide or show the panel",
+            &[plain(Key::H)],
+        ),
         row(C::TogglePause, G::View, "Pause refining", &[plain(Key::P)]),
         row(C::ToggleProbe, G::View, "Probe pixels", &[plain(Key::I)]),
         row(C::ExposureUp, G::View, "Brighter", &[plain(Key::E)]),

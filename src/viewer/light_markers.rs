@@ -134,7 +134,11 @@ fn draw(
         Color32::from_gray(70)
     };
     let lit = response.hovered() || response.dragged();
-    let rim = if lit { theme::ACCENT } else { Color32::from_black_alpha(200) };
+    let rim = if lit {
+        theme::ACCENT
+    } else {
+        Color32::from_black_alpha(200)
+    };
     let line = Stroke::new(if lit { 2.0 } else { 1.2 }, fill.gamma_multiply(0.8));
     if let LightKind::Directional { .. } = light.kind {
         if let Some(pivot) = projection.project(camera.target) {
@@ -144,7 +148,10 @@ fn draw(
         for k in 0..8 {
             let direction = Vec2::angled(std::f32::consts::TAU * k as f32 / 8.0);
             painter.line_segment(
-                [pos + direction * (DISC + 3.0), pos + direction * (DISC + 7.0)],
+                [
+                    pos + direction * (DISC + 3.0),
+                    pos + direction * (DISC + 7.0),
+                ],
                 line,
             );
         }

@@ -103,7 +103,8 @@ impl Projection {
     #[must_use]
     pub fn pixel(&self, pos: Pos2, [w, h]: [u32; 2]) -> [u32; 2] {
         let part = (pos - self.rect.min) / self.rect.size().max(egui::Vec2::splat(1.0));
-        let index = |part: f32, n: u32| ((part * n as f32).max(0.0) as u32).min(n.saturating_sub(1));
+        let index =
+            |part: f32, n: u32| ((part * n as f32).max(0.0) as u32).min(n.saturating_sub(1));
         [index(part.x, w), index(part.y, h)]
     }
 }

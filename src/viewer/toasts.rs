@@ -67,7 +67,8 @@ impl Toasts {
                 ctx.request_repaint_after_secs((until - now) as f32);
             }
         }
-        self.shown.retain(|toast| toast.until.is_none_or(|t| t > now));
+        self.shown
+            .retain(|toast| toast.until.is_none_or(|t| t > now));
         if self.shown.is_empty() {
             return;
         }

@@ -109,7 +109,10 @@ pub fn number_ui<T>(
     T: egui::emath::Numeric,
 {
     row_ui(ui, caption, |ui| {
-        ui.add_sized([76.0, ui.spacing().interact_size.y], number.drag_value(value));
+        ui.add_sized(
+            [76.0, ui.spacing().interact_size.y],
+            number.drag_value(value),
+        );
         if let Some(original) = original {
             reset_ui(ui, caption.name, value, original);
         }
@@ -132,7 +135,10 @@ pub fn slider_ui(
         });
         let speed = f64::from(range.end() - range.start()) / 200.0;
         let number = Number::within(f64::from(*range.start())..=f64::from(*range.end()), speed);
-        ui.add_sized([54.0, ui.spacing().interact_size.y], number.drag_value(value));
+        ui.add_sized(
+            [54.0, ui.spacing().interact_size.y],
+            number.drag_value(value),
+        );
         if let Some(original) = original {
             reset_ui(ui, caption.name, value, original);
         }

@@ -134,9 +134,8 @@ impl Coordinator {
     }
 
     fn take(&mut self, generation: u64, request: RenderRequest) {
-        let keeps_film = |job: &&mut Job| {
-            !job.failed && job.stride > 0 && job.request.same_samples(&request)
-        };
+        let keeps_film =
+            |job: &&mut Job| !job.failed && job.stride > 0 && job.request.same_samples(&request);
         if let Some(job) = self.job.as_mut().filter(keeps_film) {
             job.generation = generation;
             job.request = request;

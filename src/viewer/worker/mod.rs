@@ -105,6 +105,15 @@ pub struct RenderRequest {
 }
 
 impl RenderRequest {
+    /// Whether there is nothing to do for the other one.
+    #[must_use]
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.same_samples(other)
+            && self.exposure_ev.to_bits() == other.exposure_ev.to_bits()
+            && self.first_pass == other.first_pass
+            && self.refinement == other.refinement
+    }
+
     /// Whether both ask for the same samples, so that what is done can stay.
     fn same_samples(&self, other: &Self) -> bool {
         let (a, b) = (&self.snapshot, &other.snapshot);
