@@ -5,6 +5,7 @@ mod camera;
 pub mod file;
 pub mod load;
 mod open;
+pub mod save_picture;
 mod settings;
 mod warning;
 

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use super::built_in::{SCENES, built_in};
 use super::load::{LoadOptions, load_model};
-use super::{LoadError, LoadedScene, built_in, file};
+use super::{LoadError, LoadedScene, file};
 
 /// Opens a scene file (by its ending, `.toml`), a built-in scene (by name, unless a file is called so) or a
 /// model (anything else; its content decides).
@@ -13,8 +14,11 @@ use super::{LoadError, LoadedScene, built_in, file};
 pub fn open(input: &Path, options: &LoadOptions) -> Result<LoadedScene, LoadError> {
     let is_file = input.exists();
     let name = input.to_str();
-    if let Some(name) = name.filter(|name| !is_file && is_built_in(name)) {
-        return built_in::built_in(name, options);
+    let generated = name
+        .filter(|_| !is_file)
+        .and_then(|name| built_in(name, options));
+    if let Some(loaded) = generated {
+        return Ok(loaded);
     }
     // Something with an ending is meant as a file: that it is missing says more than a list of scenes.
     if !is_file && input.extension().is_none() {
@@ -34,12 +38,8 @@ pub fn open(input: &Path, options: &LoadOptions) -> Result<LoadedScene, LoadErro
     }
 }
 
-fn is_built_in(name: &str) -> bool {
-    built_in_names().contains(&name)
-}
-
 /// Names of the built-in scenes, as the command line takes them.
 #[must_use]
 pub fn built_in_names() -> Vec<&'static str> {
-    built_in::SCENES.iter().map(|scene| scene.name).collect()
+    SCENES.iter().map(|scene| scene.name).collect()
 }

@@ -20,7 +20,7 @@ use super::toasts::Toasts;
 use super::viewport::{self, Framebuffer, ViewportClick};
 use super::worker::{FirstPass, Refinement, RenderNote, RenderRequest, RenderWorker};
 use super::{ViewOptions, light_markers, theme, windows};
-use crate::render::{Film, Progressive, Snapshot, probe};
+use crate::render::{Progressive, Snapshot, probe};
 use crate::scene::built_in::SCENES;
 use crate::scene::file::{SceneView, write_scene};
 use crate::scene::{LoadError, LoadedScene};
@@ -64,7 +64,7 @@ impl ViewerApp {
             Ok(Box::new(renderer) as _)
         });
         let mut app = Self {
-            worker: RenderWorker::spawn(factory, write_picture, wake(ctx))?,
+            worker: RenderWorker::spawn(factory, wake(ctx))?,
             loader: Loader::new(options.normalize, wake(ctx)),
             dialogs: Dialogs::new(wake(ctx)),
             doc: None,
@@ -218,7 +218,7 @@ impl ViewerApp {
         let Some(material) = doc.settings.materials.get_mut(added.material) else {
             return;
         };
-        let image = added.scene.images.len().saturating_sub(1);
+        let image = added.image;
         if let Some(slot) = added.slot.and_then(|i| material.maps.get_mut(i)) {
             slot.image = image;
             slot.note = "chosen in the window".into();
@@ -593,10 +593,4 @@ fn free_role(maps: &[MapSlot], path: &Path) -> MapRole {
         },
         |(role, _)| *role,
     )
-}
-
-/// What the worker saves with.
-fn write_picture(path: &Path, film: &Film, exposure_ev: f32) -> Result<(), String> {
-    let _ = (film, exposure_ev);
-    Err(format!("{}", path.display()))
 }

@@ -4,13 +4,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-use crate::scene::load::{LoadMonitor, LoadOptions};
+use crate::scene::load::{LoadMonitor, LoadOptions, PictureError, PictureStore};
 use crate::scene::{LoadError, LoadedScene, Scene, open};
 
 /// A picture that found its way into a scene.
 pub struct AddedPicture {
     /// The scene with the picture behind the others.
     pub scene: Arc<Scene>,
+    /// Index of the picture.
+    pub image: usize,
     /// The scene it was added to; if another one is open by now, the result is of no use.
     pub before: Arc<Scene>,
     /// Material that wants it.
@@ -88,15 +90,12 @@ impl Loader {
     ) -> std::io::Result<()> {
         let (before, file) = (Arc::clone(scene), path.clone());
         let result = self.spawn(move || {
-            let added = load_picture(&file).map(|image| {
-                let mut scene = Scene::clone(&before);
-                scene.images.push(image);
-                AddedPicture {
-                    scene: Arc::new(scene),
-                    before,
-                    material,
-                    slot,
-                }
+            let added = with_picture(&before, &file).map(|(scene, image)| AddedPicture {
+                scene,
+                image,
+                before,
+                material,
+                slot,
             });
             Loaded::Picture(file, added.map_err(|error| error.to_string()))
         })?;
@@ -190,6 +189,14 @@ fn crashed(path: &Path) -> LoadError {
     }
 }
 
-fn load_picture(path: &Path) -> Result<crate::texture::MapImage, String> {
-    Err(path.display().to_string())
+/// A scene that has the picture too, and its index. A file that is there already is not decoded again.
+fn with_picture(scene: &Arc<Scene>, path: &Path) -> Result<(Arc<Scene>, usize), PictureError> {
+    let mut store = PictureStore::with_images(scene.images.clone());
+    let (image, _remark) = store.load(path)?;
+    if image < scene.images.len() {
+        return Ok((Arc::clone(scene), image));
+    }
+    let mut scene = Scene::clone(scene);
+    scene.images = store.images;
+    Ok((Arc::new(scene), image))
 }

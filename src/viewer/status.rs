@@ -204,7 +204,7 @@ fn loading_ui(ui: &mut Ui, loading: Option<&(String, f32)>) -> bool {
 fn rays_per_sec(stats: &FrameStats) -> f64 {
     let secs = f64::from(stats.pass_millis) * 1e-3;
     if secs > 0.0 {
-        stats.counters.rays() as f64 / secs
+        stats.pass_rays as f64 / secs
     } else {
         0.0
     }

@@ -1,5 +1,11 @@
-//! Every test that needs more than one room, in one binary: one link.
+//! One binary for all integration tests, so that they link once.
 
 mod bvh;
+mod layering;
+mod mapping;
+mod metrics;
 mod numerics;
+mod progressive;
+mod reference;
 mod shapes;
+mod support;

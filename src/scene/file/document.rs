@@ -170,6 +170,8 @@ pub(super) struct MapKeys {
     pub gain: Option<f32>,
     /// `bias`.
     pub bias: Option<f32>,
+    /// `strength`.
+    pub strength: Option<f32>,
     /// `baked_amplitude`, world units.
     pub baked_amplitude: Option<OrDefault<f64>>,
     /// `note`.

@@ -6,6 +6,7 @@
 //! round: the scene is written, the text changed, and read back, so that a key means the same everywhere.
 
 mod apply;
+mod apply_material;
 mod document;
 mod fault;
 mod overrides;

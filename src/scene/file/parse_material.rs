@@ -103,6 +103,7 @@ fn map(mut table: Section<'_>) -> Read<MapKeys> {
         uv_offset: table.read("uv_offset", pair)?,
         gain: table.read("gain", |x| x.single(Limits::Finite))?,
         bias: table.read("bias", |x| x.single(Limits::Finite))?,
+        strength: table.read("strength", |x| x.single(Limits::Above(0.0)))?,
         baked_amplitude: table.read("baked_amplitude", baked_amplitude)?,
         note: table.read("note", Item::text)?,
     };

@@ -9,7 +9,7 @@ use super::fault::{Fault, line_of};
 use super::parse::parse;
 use super::paths::folder;
 use crate::scene::load::{LoadOptions, load_model};
-use crate::scene::{LoadError, LoadWarning, LoadedScene, SceneSource, built_in};
+use crate::scene::{LoadError, LoadWarning, LoadedScene, SceneSource, built_in, built_in_names};
 
 /// Reads a scene file with its model and pictures.
 ///
@@ -81,12 +81,12 @@ fn load_base(
         Fault::new(document.model.at, message).in_file(path, text)
     };
     match &document.model.value {
-        ModelName::BuiltIn(name) => {
-            built_in::built_in(name, &options).map_err(|error| match error {
-                LoadError::Unknown(why) => at_key(format!("no such scene: {why}")),
-                other => other,
-            })
-        }
+        ModelName::BuiltIn(name) => built_in::built_in(name, &options).ok_or_else(|| {
+            let known = built_in_names().join(", ");
+            at_key(format!(
+                "there is no built-in scene \"{name}\"; there are {known}"
+            ))
+        }),
         ModelName::File(name) => {
             let model = folder(path).join(name);
             load_model(&model, &options).map_err(|error| match error {

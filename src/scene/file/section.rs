@@ -263,7 +263,7 @@ impl<'a> Item<'a> {
     /// An array of exactly `N` values, each read by `read`.
     pub fn array<const N: usize, T: Copy + Default>(
         &self,
-        read: impl Fn(&Item<'a>) -> Read<T>,
+        read: impl Fn(&Self) -> Read<T>,
     ) -> Read<[T; N]> {
         let wanted = format!("an array of {N} numbers");
         let parts = self.parts(&wanted)?;

@@ -27,9 +27,7 @@ pub(super) fn material(
     text.single("reflectivity", material.reflectivity)?;
     text.or_default("amplitude", material.amplitude)?;
     text.or_default("midlevel", material.midlevel)?;
-    if material.default_amplitude > 0.0 {
-        text.double("default_amplitude", material.default_amplitude)?;
-    }
+    text.double("default_amplitude", material.default_amplitude)?;
     if material.maps.is_empty() {
         text.raw("map", "[]");
     }
@@ -91,6 +89,9 @@ fn numbers(text: &mut Text, slot: &MapSlot, plain: &MapSlot) -> Result<(), SaveE
     }
     if slot.bias != plain.bias {
         text.single("bias", slot.bias)?;
+    }
+    if slot.strength != plain.strength && slot.strength > 0.0 {
+        text.single("strength", slot.strength)?;
     }
     if let Some(amplitude) = slot.baked_amplitude.filter(|&a| a > 0.0) {
         text.double("baked_amplitude", amplitude)?;

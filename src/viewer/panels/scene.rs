@@ -36,7 +36,11 @@ pub(super) fn scene_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
 
 fn built_in_ui(ui: &mut Ui, actions: &mut Vec<Action>) {
     for scene in &SCENES {
-        if ui.button(scene.name).on_hover_text(scene.summary).clicked() {
+        if ui
+            .button(scene.label)
+            .on_hover_text(scene.summary)
+            .clicked()
+        {
             actions.push(Action::Open(scene.name.into()));
             ui.close();
         }

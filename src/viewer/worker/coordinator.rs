@@ -15,6 +15,7 @@ use super::{
     RendererFactory, Shared, lock,
 };
 use crate::render::{PassEnd, Snapshot};
+use crate::scene::save_picture::{SaveError, write_exr, write_png};
 
 /// Milliseconds that a first pass may take: the rest of a 60 Hz interval goes to encoding and the window.
 const FIRST_PASS_MILLIS: f32 = 13.0;
@@ -37,8 +38,13 @@ struct Job {
     request: RenderRequest,
     /// Stride of what is in the film; 0 before the first pass.
     stride: u32,
-    /// Duration of the last pass.
+    /// Time spent on the pass under way, stopped parts included.
+    spent: Duration,
+    /// Duration of the last complete pass.
     pass_millis: f32,
+    /// Rays of the last complete pass, and of all up to it.
+    pass_rays: u64,
+    rays: u64,
     /// A panic ended it; nothing more is tried until the next request.
     failed: bool,
 }
@@ -152,7 +158,10 @@ impl Coordinator {
             generation,
             request,
             stride: 0,
+            spent: Duration::ZERO,
             pass_millis: 0.0,
+            pass_rays: 0,
+            rays: 0,
             failed: false,
         });
         self.guarded(Self::start);
@@ -221,8 +230,11 @@ impl Coordinator {
         } else {
             renderer.preview(stride, &stop)
         };
+        if let Some(job) = &mut self.job {
+            job.spent += began.elapsed();
+        }
         if end == PassEnd::Complete {
-            self.complete(stride, began.elapsed());
+            self.complete(stride);
         }
         Ok(())
     }
@@ -255,20 +267,26 @@ impl Coordinator {
         }
     }
 
-    fn complete(&mut self, stride: u32, took: Duration) {
+    fn complete(&mut self, stride: u32) {
         self.passes += 1;
-        let Some(job) = &mut self.job else { return };
+        let Some((job, (_, renderer))) = self.job.as_mut().zip(self.renderer.as_ref()) else {
+            return;
+        };
+        let took = std::mem::take(&mut job.spent).as_secs_f32();
         let before = std::mem::replace(&mut job.stride, stride);
-        job.pass_millis = took.as_secs_f32() * 1e3;
+        let rays = renderer.counters().rays();
+        job.pass_rays = rays.saturating_sub(job.rays);
+        job.rays = rays;
+        job.pass_millis = took * 1e3;
         if before != 1 {
             // Later samples say nothing about a first pass, whose hits may be cached.
-            let nanos = took.as_secs_f32() * 1e9 / pixels_of(job.request.snapshot.size, stride);
+            let nanos = took * 1e9 / pixels_of(job.request.snapshot.size, stride);
             let known = self.nanos_per_pixel.unwrap_or(nanos);
             self.nanos_per_pixel = Some(0.5 * (known + nanos));
         }
-        let samples = self.renderer.as_ref().map_or(0, |r| r.1.film().samples());
         let due = self.shown_at.is_none_or(|at| at.elapsed() >= SHOW_EVERY);
-        if before != 1 || samples <= FAST_SAMPLES || due || self.is_converged() {
+        let young = before != 1 || renderer.samples() <= FAST_SAMPLES;
+        if young || due || self.is_converged() {
             self.publish();
         }
     }
@@ -280,20 +298,20 @@ impl Coordinator {
             return;
         };
         let Snapshot { settings, size, .. } = &job.request.snapshot;
-        let report = renderer.report();
         let stats = FrameStats {
             generation: job.generation,
             stride: job.stride,
             samples: if job.stride == 1 {
-                renderer.film().samples()
+                renderer.samples()
             } else {
                 0
             },
             samples_wanted: settings.samples.max(1),
             converged,
             pass_millis: job.pass_millis,
-            counters: report.counters,
-            reshaded: report.reshaded,
+            pass_rays: job.pass_rays,
+            counters: renderer.counters(),
+            reshaded: renderer.reuses_hits(),
             passes: self.passes,
             threads: renderer.threads(),
         };
@@ -320,14 +338,13 @@ impl Coordinator {
         let Some((job, (_, renderer))) = self.job.as_ref().zip(self.renderer.as_ref()) else {
             return;
         };
-        let film = renderer.film();
-        let (samples, wanted) = (film.samples(), job.request.snapshot.settings.samples);
-        let note = match (self.shared.write_picture)(path, film, job.request.exposure_ev) {
+        let (samples, wanted) = (renderer.samples(), job.request.snapshot.settings.samples);
+        let note = match write_picture(path, renderer.as_ref(), job.request.exposure_ev) {
             Ok(()) => RenderNote::Saved(format!(
                 "Saved {} ({samples} of {wanted} samples)",
                 path.display()
             )),
-            Err(error) => RenderNote::Error(format!("Could not save {}: {error}", path.display())),
+            Err(error) => RenderNote::Error(format!("Could not save: {error}")),
         };
         self.note(note);
     }
@@ -336,6 +353,25 @@ impl Coordinator {
         lock(&self.shared.outbox).notes.push(note);
         (self.shared.wake_window)();
     }
+}
+
+/// Writes what is shown, or linear values without exposure if the name ends in `.exr`.
+fn write_picture(
+    path: &Path,
+    renderer: &dyn PassRenderer,
+    exposure_ev: f32,
+) -> Result<(), SaveError> {
+    let picture = renderer.picture();
+    let size = [picture.width, picture.height];
+    let ending = path.extension();
+    if ending.is_some_and(|ending| ending.eq_ignore_ascii_case("exr")) {
+        let linear: Vec<_> = picture.pixels.iter().map(|c| c.to_array()).collect();
+        return write_exr(path, size, &linear);
+    }
+    let mut rgba = vec![[0; 4]; picture.pixels.len()];
+    renderer.encode_into(exposure_ev, &mut rgba);
+    let rgb: Vec<_> = rgba.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
+    write_png(path, size, &rgb)
 }
 
 /// Pixels that a pass with this stride renders.

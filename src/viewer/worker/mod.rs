@@ -10,14 +10,14 @@
 mod coordinator;
 
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
 use egui::{Color32, ColorImage};
 
-use crate::render::{Counters, Film, PassEnd, PassReport, Progressive, Snapshot};
+use crate::render::{Counters, PassEnd, Picture, Progressive, Snapshot};
 
 /// What the worker needs from a renderer. [`Progressive`] is the one that ships.
 pub trait PassRenderer: Send {
@@ -27,14 +27,18 @@ pub trait PassRenderer: Send {
     fn preview(&mut self, stride: u32, stop: &(dyn Fn() -> bool + Sync)) -> PassEnd;
     /// See [`Progressive::pass`].
     fn pass(&mut self, stop: &(dyn Fn() -> bool + Sync)) -> PassEnd;
-    /// See [`Progressive::film`].
-    fn film(&self) -> &Film;
+    /// See [`Progressive::samples`].
+    fn samples(&self) -> u32;
+    /// See [`Progressive::picture`].
+    fn picture(&self) -> Picture;
     /// See [`Progressive::encode_into`].
     fn encode_into(&self, exposure_ev: f32, rgba: &mut [[u8; 4]]);
     /// See [`Progressive::is_converged`].
     fn is_converged(&self) -> bool;
-    /// See [`Progressive::report`].
-    fn report(&self) -> PassReport;
+    /// See [`Progressive::counters`].
+    fn counters(&self) -> Counters;
+    /// See [`Progressive::reuses_hits`].
+    fn reuses_hits(&self) -> bool;
     /// See [`Progressive::threads`].
     fn threads(&self) -> usize;
 }
@@ -49,8 +53,11 @@ impl PassRenderer for Progressive {
     fn pass(&mut self, stop: &(dyn Fn() -> bool + Sync)) -> PassEnd {
         Self::pass(self, stop)
     }
-    fn film(&self) -> &Film {
-        Self::film(self)
+    fn samples(&self) -> u32 {
+        Self::samples(self)
+    }
+    fn picture(&self) -> Picture {
+        Self::picture(self)
     }
     fn encode_into(&self, exposure_ev: f32, rgba: &mut [[u8; 4]]) {
         Self::encode_into(self, exposure_ev, rgba);
@@ -58,8 +65,11 @@ impl PassRenderer for Progressive {
     fn is_converged(&self) -> bool {
         Self::is_converged(self)
     }
-    fn report(&self) -> PassReport {
-        *Self::report(self)
+    fn counters(&self) -> Counters {
+        Self::counters(self)
+    }
+    fn reuses_hits(&self) -> bool {
+        Self::reuses_hits(self)
     }
     fn threads(&self) -> usize {
         Self::threads(self)
@@ -139,9 +149,11 @@ pub struct FrameStats {
     pub converged: bool,
     /// Duration of the last pass.
     pub pass_millis: f32,
-    /// Exact counts of the last pass.
+    /// Rays of all kinds in the last pass.
+    pub pass_rays: u64,
+    /// Exact counts of the whole picture so far.
     pub counters: Counters,
-    /// Whether cached hits replaced the last pass' camera rays.
+    /// Whether hits of the snapshot before replaced camera rays.
     pub reshaded: bool,
     /// Passes and previews completed since the worker started.
     pub passes: u64,
@@ -167,9 +179,6 @@ pub enum RenderNote {
     Saved(String),
 }
 
-/// Writes a film at an exposure to a file; the error is for the user.
-pub type PictureWriter = fn(&Path, &Film, f32) -> Result<(), String>;
-
 #[derive(Default)]
 struct Inbox {
     request: Option<(u64, RenderRequest)>,
@@ -191,7 +200,6 @@ struct Shared {
     asleep: AtomicBool,
     outbox: Mutex<Outbox>,
     wake_window: Box<dyn Fn() + Send + Sync>,
-    write_picture: PictureWriter,
 }
 
 /// A poisoned lock only means that another thread panicked between two plain assignments.
@@ -213,7 +221,6 @@ impl RenderWorker {
     /// If the system gives no thread.
     pub fn spawn(
         factory: RendererFactory,
-        write_picture: PictureWriter,
         wake_window: impl Fn() + Send + Sync + 'static,
     ) -> io::Result<Self> {
         let shared = Arc::new(Shared {
@@ -224,7 +231,6 @@ impl RenderWorker {
             asleep: AtomicBool::new(false),
             outbox: Mutex::default(),
             wake_window: Box::new(wake_window),
-            write_picture,
         });
         let for_thread = Arc::clone(&shared);
         let thread = std::thread::Builder::new()
