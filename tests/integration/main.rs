@@ -9,3 +9,5 @@ mod progressive;
 mod reference;
 mod shapes;
 mod support;
+#[cfg(feature = "viewer")]
+mod viewer;
