@@ -16,7 +16,7 @@ use crate::shading::{Light, LightKind};
 const GRAB: f32 = 13.0;
 /// Radius of the disc, points.
 const DISC: f32 = 6.0;
-/// Distance of a directional light's marker from the pivot, parts of the picture's height.
+/// Distance of a directional light's marker from the pivot, parts of the picture's shorter side.
 const ARROW_PART: f64 = 0.27;
 /// Change of distance per point of a drag with Ctrl or Shift.
 const DEPTH_PER_POINT: f64 = 0.006;
@@ -63,9 +63,14 @@ fn sense(ui: &Ui, pos: Pos2, i: usize, light: &Light) -> Response {
     response
 }
 
+/// World units between the pivot and a directional light's marker.
 fn arrow_length(projection: &Projection, camera: &Camera, rect: Rect) -> f64 {
-    let height = projection.units_per_point(camera.distance()) * f64::from(rect.height());
-    height * ARROW_PART
+    projection.units_per_point(camera.distance()) * arrow_points(rect)
+}
+
+/// The same in points, as long as the arrow lies across the view.
+fn arrow_points(rect: Rect) -> f64 {
+    (f64::from(rect.width().min(rect.height())) * ARROW_PART).max(1.0)
 }
 
 /// A step of a drag.
@@ -84,7 +89,7 @@ impl Motion {
         Self {
             delta: response.drag_delta(),
             along: ui.input(|input| input.modifiers.command || input.modifiers.shift),
-            radius: (f64::from(rect.height()) * ARROW_PART).max(1.0),
+            radius: arrow_points(rect),
             near_side: ui.data(|data| data.get_temp(response.id)).unwrap_or(true),
         }
     }

@@ -43,30 +43,30 @@ fn add_ui(ui: &mut Ui, doc: &mut Document) {
             .iter()
             .any(|l| l.kind == LightKind::Ambient);
         let ambient = ui.add_enabled(!has_ambient, egui::Button::new("Ambient"));
-        if ambient
-            .on_disabled_hover_text("There is one already")
-            .clicked()
-        {
-            add(doc, "ambient", |_, _| LightKind::Ambient, |_| 0.1);
+        let ambient = ambient.on_disabled_hover_text("There is one already");
+        if ambient.clicked() {
+            add(doc, "ambient", LightKind::Ambient);
         }
         if ui.button("Point").clicked() {
-            add(doc, "point", new_point, |distance| {
-                (distance * distance) as f32
-            });
+            let kind = new_point(&doc.settings.camera);
+            add(doc, "point", kind);
         }
         if ui.button("Directional").clicked() {
-            add(doc, "sun", new_directional, |_| 1.0);
+            let kind = new_directional(&doc.settings.camera);
+            add(doc, "sun", kind);
         }
     });
 }
 
-/// Puts a light where it lights what the camera sees; `intensity` gets its distance from the pivot.
-fn add(
-    doc: &mut Document,
-    name: &str,
-    kind: impl Fn(&Camera, f64) -> LightKind,
-    intensity: impl Fn(f64) -> f32,
-) {
+/// Adds a light under a free name, as bright as it takes to see it at the pivot.
+fn add(doc: &mut Document, name: &str, kind: LightKind) {
+    let intensity = match kind {
+        LightKind::Ambient => 0.1,
+        LightKind::Directional { .. } => 1.0,
+        LightKind::Point { position, .. } => {
+            position.distance_squared(doc.settings.camera.target) as f32
+        }
+    };
     let lights = &mut doc.settings.lights;
     let taken = |name: &str| lights.iter().any(|light| light.name == name);
     let mut names = (2..).map(|n| format!("{name} {n}"));
@@ -75,22 +75,23 @@ fn add(
     } else {
         name.to_owned()
     };
-    let distance = doc.settings.camera.distance() * 0.5;
-    let kind = kind(&doc.settings.camera, distance);
-    lights.push(Light::new(name, kind, intensity(distance)));
+    lights.push(Light::new(name, kind, intensity));
 }
 
-/// Above the eye's shoulder, half way to the pivot.
-fn new_point(camera: &Camera, distance: f64) -> LightKind {
+/// Between eye and pivot, in the upper half of the picture, where its marker can be seen.
+fn new_point(camera: &Camera) -> LightKind {
     let axes = camera.axes();
-    let from = (axes.right * 0.35 + axes.up * 0.45 - axes.forward * 0.8).normalize_or(DVec3::Z);
+    let depth = camera.distance() * 0.7;
+    let height = 2.0 * depth * (camera.vfov * 0.5).tan();
+    let aside = axes.right * 0.1 + axes.up * 0.25;
     LightKind::Point {
-        position: camera.target + from * distance,
+        position: camera.eye + axes.forward * depth + aside * height,
         falloff: Falloff::InverseSquare,
     }
 }
 
-fn new_directional(camera: &Camera, _distance: f64) -> LightKind {
+/// Over the viewer's left shoulder.
+fn new_directional(camera: &Camera) -> LightKind {
     let axes = camera.axes();
     LightKind::Directional {
         direction: (axes.forward - axes.up * 0.7 + axes.right * 0.5).normalize_or(DVec3::NEG_Z),

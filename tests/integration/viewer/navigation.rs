@@ -1,6 +1,7 @@
 //! Mouse and keys in the picture.
 
 use egui::{Key, Modifiers, PointerButton, pos2, vec2};
+use egui_kittest::kittest::Queryable;
 use reliefscope::shading::LightKind;
 use reliefscope::surface::mapping::Method;
 use reliefscope::viewer::status::Progress;
@@ -87,10 +88,12 @@ fn double_click_sets_the_pivot_on_the_model() {
 #[test]
 fn h_hides_and_shows_the_panel() {
     let mut driver = Driver::reference();
-    assert!(driver.has("Amplitude") && driver.has("Marker of point"));
+    driver.button("Lights");
+    driver.button("Point");
+    assert!(driver.has("Amplitude slider") && driver.has("Marker of point"));
     driver.key(Key::H);
     assert!(!driver.app().panel_shown());
-    assert!(!driver.has("Amplitude") && !driver.has("Marker of point"));
+    assert!(!driver.has("Amplitude slider") && !driver.has("Marker of point"));
     driver.key(Key::H);
     assert!(driver.app().panel_shown());
 }
@@ -181,38 +184,65 @@ fn undo_and_redo_leave_the_camera_alone() {
 }
 
 #[test]
-fn a_light_is_dragged_by_its_marker() {
+fn a_point_light_is_dragged_across_and_along_the_view() {
     let mut driver = Driver::reference();
-    let lights = driver.settings().lights.clone();
-    for (i, light) in lights.iter().enumerate() {
-        let label = format!("Marker of {}", light.name);
-        if !driver.has(&label) {
-            continue;
-        }
-        let from = {
-            use egui_kittest::kittest::Queryable;
-            driver.harness.get_by_label(&label).rect().center()
-        };
-        let camera = driver.camera();
-        driver.drag_from(
-            from,
-            PointerButton::Primary,
-            Modifiers::NONE,
-            vec2(60.0, 30.0),
-        );
-        assert_eq!(driver.camera(), camera, "the light moves, not the camera");
-        match (&light.kind, &driver.settings().lights[i].kind) {
-            (LightKind::Point { position: a, .. }, LightKind::Point { position: b, .. }) => {
-                let shift = *b - *a;
-                assert!(shift.dot(camera.axes().right) > 0.0);
-                assert!(shift.dot(camera.axes().forward).abs() < 1e-6 * shift.length());
-            }
-            (LightKind::Directional { direction: a }, LightKind::Directional { direction: b }) => {
-                assert_ne!(a, b);
-                assert!((a.length() - b.length()).abs() < 1e-6);
-            }
-            _ => {}
-        }
-        driver.keys(Modifiers::COMMAND, Key::Z);
-    }
+    driver.button("Lights");
+    driver.button("Point");
+    let position = |driver: &Driver| match driver.settings().lights.last().map(|l| l.kind) {
+        Some(LightKind::Point { position, .. }) => position,
+        other => panic!("{other:?}"),
+    };
+    let (camera, start) = (driver.camera(), position(&driver));
+    let from = driver
+        .harness
+        .get_by_label("Marker of point")
+        .rect()
+        .center();
+    driver.drag_from(
+        from,
+        PointerButton::Primary,
+        Modifiers::NONE,
+        vec2(60.0, 30.0),
+    );
+    assert_eq!(driver.camera(), camera, "the light moves, not the camera");
+    let across = position(&driver) - start;
+    let axes = camera.axes();
+    assert!(across.dot(axes.right) > 0.0 && across.dot(axes.up) < 0.0);
+    assert!(across.dot(axes.forward).abs() < 1e-6 * across.length());
+    let (start, from) = (position(&driver), from + vec2(60.0, 30.0));
+    driver.drag_from(
+        from,
+        PointerButton::Primary,
+        Modifiers::SHIFT,
+        vec2(0.0, 40.0),
+    );
+    let along = position(&driver) - start;
+    assert!(along.dot(axes.forward) < 0.0, "pulled down it comes nearer");
+    assert_eq!(driver.camera(), camera);
+}
+
+#[test]
+fn a_directional_light_turns_by_its_marker() {
+    let mut driver = Driver::reference();
+    let direction = |driver: &Driver| match driver.settings().lights[0].kind {
+        LightKind::Directional { direction } => direction,
+        other => panic!("{other:?}"),
+    };
+    let (camera, before) = (driver.camera(), direction(&driver));
+    let from = driver
+        .harness
+        .get_by_label("Marker of directional 1")
+        .rect()
+        .center();
+    driver.drag_from(
+        from,
+        PointerButton::Primary,
+        Modifiers::NONE,
+        vec2(50.0, 0.0),
+    );
+    let after = direction(&driver);
+    assert_eq!(driver.camera(), camera);
+    assert!((after.length() - before.length()).abs() < 1e-9);
+    // The marker stands where the light comes from and follows the pointer to the right.
+    assert!((after - before).dot(camera.axes().right) < 0.0);
 }
