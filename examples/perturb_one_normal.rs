@@ -16,8 +16,9 @@ const AMPLITUDE: f32 = 0.5;
 const MIDLEVEL: f32 = 1.0;
 
 fn main() {
-    // 256 texels of a ramp, and the same slope as a normal and as a slope map: both store (n + 1) / 2.
-    let ramp = (0..256_u16).map(|i| i * 257).collect();
+    // A ramp that gains 1 over 256 texels, and its slope as a normal and as a slope map: both store
+    // (n + 1) / 2.
+    let ramp = (0..256_u16).map(|i| i * 256).collect();
     let heights = HeightMap::U16(Grid::new(256, 1, ramp));
     let normal = normalize_or(Vec3::new(-AMPLITUDE, 0.0, 1.0), Vec3::Z);
     let stored = |v: Vec3| NormalMap::F32(Grid::new(1, 1, vec![(v * 0.5 + 0.5).to_array()]));

@@ -1,10 +1,13 @@
 //! One binary for all integration tests, so that they link once.
 
+#![expect(clippy::unwrap_used, reason = "a test that panics has failed")]
+
 mod bvh;
 mod layering;
 mod mapping;
 mod metrics;
 mod numerics;
+mod oracle;
 mod progressive;
 mod reference;
 mod shapes;

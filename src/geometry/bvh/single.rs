@@ -1,9 +1,9 @@
 //! One ray at a time: closest hit and any hit.
 
 use super::Bvh;
-use super::node::{Block, Child, ChildRef, Node};
+use super::node::{Child, ChildRef, Node};
 use super::stack::{Entry, Stack};
-use crate::geometry::triangle::{LANES, TriangleHit, TriangleTest};
+use crate::geometry::triangle::{LANES, TriangleHit, TriangleTest, take_lowest};
 use crate::geometry::{Hit, Ray, RaySlabs};
 
 /// Says which hits count: the door for cut-outs.
@@ -64,8 +64,8 @@ impl Bvh {
                 }
                 Child::Block(index) => {
                     if let Some(block) = self.blocks.get(index) {
-                        for_each_hit(block, &test, &slabs, |prim, hit| {
-                            closest.offer(prim, hit, filter);
+                        test.intersect_block(&slabs, &block.corners, |lane, hit| {
+                            closest.offer(block.prims[lane], hit, filter);
                             false
                         });
                     }
@@ -104,8 +104,8 @@ impl Bvh {
                 }
                 Child::Block(index) => {
                     let found = self.blocks.get(index).is_some_and(|block| {
-                        for_each_hit(block, &test, &slabs, |prim, hit| {
-                            hit.t < t_max && filter.accept(prim, hit.u, hit.v)
+                        test.intersect_block(&slabs, &block.corners, |lane, hit| {
+                            hit.t < t_max && filter.accept(block.prims[lane], hit.u, hit.v)
                         })
                     });
                     if found {
@@ -145,36 +145,6 @@ impl Closest {
             });
         }
     }
-}
-
-/// Clears the lowest set bit and returns its position, which is below [`LANES`].
-#[inline(always)]
-fn take_lowest(mask: &mut u32) -> usize {
-    let lane = mask.trailing_zeros() as usize;
-    *mask &= *mask - 1;
-    // Lets the compiler see that indexing by it cannot fail.
-    lane % LANES
-}
-
-/// Calls `visit` for each triangle of the block that the ray meets, until it returns `true`, and says
-/// whether it did.
-#[inline(always)]
-fn for_each_hit<T: TriangleTest>(
-    block: &Block,
-    test: &T,
-    slabs: &RaySlabs,
-    mut visit: impl FnMut(u32, TriangleHit) -> bool,
-) -> bool {
-    let mut mask = test.candidates(&block.corners);
-    while mask != 0 {
-        let lane = take_lowest(&mut mask);
-        if let Some(hit) = test.intersect(slabs, &block.corners(lane))
-            && visit(block.prims[lane], hit)
-        {
-            return true;
-        }
-    }
-    false
 }
 
 impl Entry {

@@ -48,10 +48,6 @@ pub fn assemble(
     }
 }
 
-fn build_tree(mesh: &TriangleMesh) -> Bvh {
-    Bvh::build(mesh)
-}
-
 /// Corners of the box around used vertices.
 fn bounds(mesh: &WorldMesh) -> Option<[DVec3; 2]> {
     let mut corners = mesh
