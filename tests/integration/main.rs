@@ -14,3 +14,5 @@ mod progressive;
 mod reference;
 mod shapes;
 mod support;
+#[cfg(feature = "viewer")]
+mod viewer;
