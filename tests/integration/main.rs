@@ -4,14 +4,17 @@
 
 mod answers;
 mod bvh;
+mod cli;
 mod golden;
 mod layering;
 mod load_obj;
 mod mapping;
 mod metrics;
 mod numerics;
+mod oracle;
 mod progressive;
 mod reference;
+mod scene_file;
 mod shapes;
 mod support;
 #[cfg(feature = "viewer")]
