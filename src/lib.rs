@@ -1,6 +1,8 @@
 //! Reliefscope.
+pub mod cli;
 pub mod geometry;
 pub mod math;
+pub mod measure;
 pub mod render;
 pub mod scene;
 pub mod shading;

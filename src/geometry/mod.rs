@@ -5,12 +5,16 @@
 
 mod aabb;
 pub mod bvh;
+mod lanes;
 mod mesh;
 mod normalization;
 mod ray;
+mod slabs;
 pub mod triangle;
 
 pub use aabb::Aabb;
+pub use bvh::Bvh;
 pub use mesh::{TriangleAttributes, TriangleMesh};
 pub use normalization::Normalization;
 pub use ray::{Hit, OriginRule, Ray, offset_origin};
+pub use slabs::RaySlabs;

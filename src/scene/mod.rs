@@ -5,6 +5,7 @@ mod camera;
 pub mod file;
 pub mod load;
 mod open;
+pub mod save_picture;
 mod settings;
 mod warning;
 
@@ -18,7 +19,7 @@ use crate::geometry::{Normalization, TriangleMesh};
 use crate::texture::MapImage;
 
 pub use camera::{Camera, CameraAxes};
-pub use open::open;
+pub use open::{built_in_names, open};
 pub use settings::{Background, DisplaySettings, RenderSettings, ShadingModel, ShadingSettings};
 pub use warning::{LoadError, LoadWarning};
 

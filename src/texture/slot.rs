@@ -104,6 +104,9 @@ pub struct MapSlot {
     pub gain: f32,
     /// See `gain`.
     pub bias: f32,
+    /// Normals and slopes: factor on the slopes (MTL `-bm`), above 0. Already in `baked_amplitude` once that
+    /// is known, so only the loader reads it.
+    pub strength: f32,
     /// Normals and slopes: the relief's amplitude that is already in them, world units. `None` until
     /// known; the loader fills it in.
     pub baked_amplitude: Option<f64>,
@@ -128,6 +131,7 @@ impl MapSlot {
             uv_offset: [0.0, 0.0],
             gain: 1.0,
             bias: 0.0,
+            strength: 1.0,
             baked_amplitude: None,
             note: String::new(),
         }

@@ -1,3 +1,15 @@
-//! One binary for all integration tests: one link.
+//! One binary for all integration tests, so that they link once.
 
+#![expect(clippy::unwrap_used, reason = "a test that panics has failed")]
+
+mod bvh;
+mod layering;
 mod load_obj;
+mod mapping;
+mod metrics;
+mod numerics;
+mod oracle;
+mod progressive;
+mod reference;
+mod shapes;
+mod support;

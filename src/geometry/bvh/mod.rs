@@ -1,5 +1,104 @@
-//! Bounding volume hierarchy.
+//! Bounding volume hierarchy: eight-wide nodes over blocks of eight triangles.
+//!
+//! - `build`: a binary tree by the surface area heuristic, in parallel, the same for any thread count
+//! - `collapse`: from two children per node to eight
+//! - `node`: what lies in memory
+//! - `single`: one ray at a time, closest hit and any hit
+//! - `many`: a tile's worth of rays; the door for packet kernels
+//! - `validate`, `stats`: is the tree right, is it good
+//!
+//! A tree never changes an answer: whatever its shape, it reports the triangle, `t`, `u` and `v` that
+//! testing every triangle would, bit for bit (see [`RaySlabs`](super::RaySlabs)).
 
-/// A tree over a mesh.
-#[derive(Debug, Default)]
-pub struct Bvh;
+mod build;
+mod collapse;
+mod many;
+mod node;
+mod single;
+mod stack;
+mod stats;
+mod validate;
+
+use super::{Aabb, TriangleMesh};
+use node::{Block, ChildRef, Node};
+
+pub use single::{AcceptAll, HitFilter};
+pub use stats::BvhStats;
+
+/// A hierarchy over the triangles of one mesh. Holds its own copy of the corners.
+///
+/// Never changes after it is built, so threads share it freely.
+#[derive(Debug, Clone)]
+pub struct Bvh {
+    nodes: Vec<Node>,
+    blocks: Vec<Block>,
+    root: ChildRef,
+    bounds: Aabb,
+    /// Largest magnitude of a coordinate; see [`RaySlabs::new`](super::RaySlabs::new).
+    reach: f32,
+    triangles: usize,
+}
+
+impl Bvh {
+    /// Builds the hierarchy of a mesh on the current rayon pool; the same tree for any pool size.
+    ///
+    /// Any mesh will do: empty, coincident triangles, triangles without area. Depth stays below 100.
+    #[must_use]
+    pub fn build(mesh: &TriangleMesh) -> Self {
+        let bounds = mesh.bounds();
+        let (prims, tree) = build::binary_tree(mesh);
+        let collapse::Wide {
+            nodes,
+            blocks,
+            root,
+        } = collapse::collapse(mesh, &prims, tree.as_ref());
+        let reach = if bounds.is_empty() {
+            0.0
+        } else {
+            bounds.min.abs().max(bounds.max.abs()).max_element()
+        };
+        Self {
+            nodes,
+            blocks,
+            root,
+            bounds,
+            reach,
+            triangles: mesh.len(),
+        }
+    }
+
+    /// Box around all triangles; empty for an empty mesh.
+    #[must_use]
+    pub const fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// Largest magnitude of a coordinate, as [`RaySlabs::new`](super::RaySlabs::new) wants it.
+    #[must_use]
+    pub const fn reach(&self) -> f32 {
+        self.reach
+    }
+
+    /// Number of triangles.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.triangles
+    }
+
+    /// Whether there is nothing to hit.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.triangles == 0
+    }
+
+    /// Whether both have the same nodes and leaves in the same order.
+    #[must_use]
+    pub fn same_tree(&self, other: &Self) -> bool {
+        let same_blocks = |a: &[Block], b: &[Block]| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.same_triangles(b))
+        };
+        self.root == other.root
+            && self.nodes == other.nodes
+            && same_blocks(&self.blocks, &other.blocks)
+    }
+}

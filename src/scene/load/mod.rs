@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! load_model: bytes → obj (statements, line by line) → mesh (polygon, normals, vertices)
-//!             → materials → tile (amplitudes) → staging (camera, lights) → LoadedScene
+//!             → materials (library, mtl, picture) → amplitude → staging (camera, lights) → LoadedScene
 //! ```
 //!
 //! # Why the OBJ reader is our own
@@ -23,16 +23,25 @@
 //!
 //! A tolerant front end that rewrites files for tobj would have to parse all of this first.
 
+mod amplitude;
+mod library;
+mod lookup;
+mod map_statement;
 mod materials;
 mod mesh;
 mod model;
+mod mtl;
 mod normals;
 mod obj;
 mod options;
+mod picture;
 mod polygon;
+mod recognise;
+mod slots;
 mod staging;
-mod tile;
 
+pub use amplitude::fill_default_amplitudes;
 pub use materials::{LibraryRef, MaterialSet, load_materials};
 pub use model::load_model;
 pub use options::{LoadMonitor, LoadOptions};
+pub use picture::{DecodedPicture, PictureError, PictureLimits, PictureStore, decode_picture};
