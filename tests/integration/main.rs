@@ -2,7 +2,10 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that panics has failed")]
 
+mod answers;
 mod bvh;
+mod cli;
+mod golden;
 mod layering;
 mod load_obj;
 mod mapping;
@@ -11,5 +14,8 @@ mod numerics;
 mod oracle;
 mod progressive;
 mod reference;
+mod scene_file;
 mod shapes;
 mod support;
+#[cfg(feature = "viewer")]
+mod viewer;
