@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! load_model: bytes → obj (statements, line by line) → mesh (polygon, normals, vertices)
-//!             → materials → amplitude → staging (camera, lights) → LoadedScene
+//!             → materials (library, mtl, picture) → amplitude → staging (camera, lights) → LoadedScene
 //! ```
 //!
 //! # Why the OBJ reader is our own
