@@ -3,12 +3,15 @@
 #![expect(clippy::unwrap_used, reason = "a test that panics has failed")]
 
 mod bvh;
+mod cli;
 mod layering;
+mod load_obj;
 mod mapping;
 mod metrics;
 mod numerics;
 mod oracle;
 mod progressive;
 mod reference;
+mod scene_file;
 mod shapes;
 mod support;
