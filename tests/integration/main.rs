@@ -5,13 +5,20 @@
     reason = "a test that panics has failed; the configuration exempts only the test functions themselves"
 )]
 
+mod answers;
 mod bvh;
+mod cli;
+mod golden;
 mod layering;
+mod load_obj;
 mod mapping;
 mod metrics;
 mod numerics;
 mod oracle;
 mod progressive;
 mod reference;
+mod scene_file;
 mod shapes;
 mod support;
+#[cfg(feature = "viewer")]
+mod viewer;
