@@ -5,6 +5,7 @@
 
 mod aabb;
 pub mod bvh;
+mod lanes;
 mod mesh;
 mod normalization;
 mod ray;

@@ -41,11 +41,38 @@ pub trait TriangleTest: Sized {
     /// Degenerate and non-finite triangles, and rays with NaN, give `None`.
     fn intersect(&self, slabs: &RaySlabs, corners: &[Vec3; 3]) -> Option<TriangleHit>;
 
-    /// Bit `i` is set unless [`Self::intersect`] would certainly reject lane `i`.
-    ///
-    /// A sieve for whole blocks; the default lets everything pass.
-    #[inline]
-    fn candidates(&self, _corners: &Corners8) -> u32 {
-        (1 << LANES) - 1
+    /// Calls `visit(lane, hit)` for each lane that [`Self::intersect`] hits, with its bits, until
+    /// `visit` returns `true`; says whether it did.
+    #[inline(always)]
+    fn intersect_block(
+        &self,
+        slabs: &RaySlabs,
+        corners: &Corners8,
+        mut visit: impl FnMut(usize, TriangleHit) -> bool,
+    ) -> bool {
+        (0..LANES).any(|lane| {
+            let hit = self.intersect(slabs, &corners_of(corners, lane));
+            hit.is_some_and(|hit| visit(lane, hit))
+        })
     }
+}
+
+/// Corners of one lane.
+#[inline(always)]
+pub(super) fn corners_of(corners: &Corners8, lane: usize) -> [Vec3; 3] {
+    let corner = |[x, y, z]: &[[f32; LANES]; 3]| Vec3::new(x[lane], y[lane], z[lane]);
+    [
+        corner(&corners[0]),
+        corner(&corners[1]),
+        corner(&corners[2]),
+    ]
+}
+
+/// Clears the lowest set bit of eight and returns its position.
+#[inline(always)]
+pub(super) fn take_lowest(mask: &mut u32) -> usize {
+    let lane = mask.trailing_zeros() as usize;
+    *mask &= *mask - 1;
+    // Lets the compiler see that indexing by it cannot fail.
+    lane % LANES
 }

@@ -132,3 +132,98 @@ pub fn srgb8_from_linear(c: LinearRgb) -> [u8; 3] {
     c.to_array()
         .map(|x| (srgb_from_linear(x) * 255.0 + 0.5) as u8)
 }
+
+/// [`srgb8_from_linear`] by table: the same bytes, without a power per channel.
+#[derive(Debug)]
+pub struct SrgbEncoder {
+    /// `thresholds[b]` is the smallest linear value that encodes to byte `b`.
+    thresholds: [f32; 257],
+    /// Byte of the smallest value in each bucket: 8 exponent and 8 mantissa bits of the value.
+    buckets: Vec<u8>,
+}
+
+/// The smallest linear value told apart from 0 by the table's buckets: 2⁻¹³ is below the first threshold.
+const FIRST_BUCKET_BITS: u32 = 0x3900_0000;
+const BUCKET_SHIFT: u32 = 15;
+
+impl SrgbEncoder {
+    /// The one table.
+    #[must_use]
+    pub fn get() -> &'static Self {
+        static TABLE: std::sync::LazyLock<SrgbEncoder> = std::sync::LazyLock::new(SrgbEncoder::new);
+        &TABLE
+    }
+
+    fn new() -> Self {
+        let encode = |x: f32| (srgb_from_linear(x) * 255.0 + 0.5) as u8;
+        let mut thresholds = [f32::INFINITY; 257];
+        thresholds[0] = 0.0;
+        for byte in 1..=255_u8 {
+            // Non-negative floats are ordered like their bits, so bisection over bits finds the exact one.
+            let (mut low, mut high) = (0_u32, 1.0_f32.to_bits());
+            while high - low > 1 {
+                let middle = low + (high - low) / 2;
+                if encode(f32::from_bits(middle)) < byte {
+                    low = middle
+                } else {
+                    high = middle
+                }
+            }
+            thresholds[usize::from(byte)] = f32::from_bits(high);
+        }
+        let count = (1.0_f32.to_bits() - FIRST_BUCKET_BITS) >> BUCKET_SHIFT;
+        let buckets = (0..=count)
+            .map(|i| encode(f32::from_bits(FIRST_BUCKET_BITS + (i << BUCKET_SHIFT))))
+            .collect();
+        Self {
+            thresholds,
+            buckets,
+        }
+    }
+
+    /// Three bytes for the screen; equal to [`srgb8_from_linear`].
+    #[must_use]
+    pub fn encode(&self, c: LinearRgb) -> [u8; 3] {
+        c.to_array().map(|x| {
+            let x = x.max(0.0).min(1.0);
+            let bucket = x.to_bits().saturating_sub(FIRST_BUCKET_BITS) >> BUCKET_SHIFT;
+            let byte = self.buckets[bucket as usize];
+            // A bucket is narrower than a step of the encoding, so at most one threshold lies in it.
+            byte + u8::from(x >= self.thresholds[usize::from(byte) + 1])
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_gives_the_bytes_of_the_formula() {
+        let encoder = SrgbEncoder::get();
+        let check = |x: f32| {
+            let c = LinearRgb::gray(x);
+            assert_eq!(encoder.encode(c), srgb8_from_linear(c), "at {x:e}");
+        };
+        for special in [
+            0.0,
+            -0.0,
+            -1.0,
+            1.0,
+            2.0,
+            f32::NAN,
+            f32::INFINITY,
+            f32::NEG_INFINITY,
+            f32::MIN_POSITIVE,
+        ] {
+            check(special);
+        }
+        for bits in (0..1.01_f32.to_bits()).step_by(997) {
+            check(f32::from_bits(bits));
+        }
+        for &t in &encoder.thresholds[1..256] {
+            check(t);
+            check(t.next_down());
+        }
+    }
+}

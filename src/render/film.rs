@@ -1,53 +1,76 @@
-//! Linear sums per pixel.
+//! The picture so far, read tile by tile.
 
-use crate::math::{LinearRgb, srgb8_from_linear};
+use super::tile::{TILE_SIZE, Tile};
+use crate::math::LinearRgb;
 
-/// Sums of linear samples, row 0 on top.
-#[derive(Debug, Clone, Default)]
-pub struct Film {
-    width: u32,
-    height: u32,
-    sums: Vec<LinearRgb>,
-    samples: u32,
+/// A view of a renderer's sums. Row 0 is on top.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Picture {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Linear light, row by row.
+    pub pixels: Vec<LinearRgb>,
 }
 
-impl Film {
-    /// A black picture without samples.
+impl Picture {
+    /// A black picture.
     #[must_use]
-    pub fn new([width, height]: [u32; 2]) -> Self {
+    pub fn black([width, height]: [u32; 2]) -> Self {
         Self {
             width,
             height,
-            sums: vec![LinearRgb::BLACK; width as usize * height as usize],
-            samples: 0,
+            pixels: vec![LinearRgb::BLACK; width as usize * height as usize],
         }
     }
 
-    /// Columns and rows.
-    #[must_use]
-    pub const fn size(&self) -> [u32; 2] {
-        [self.width, self.height]
-    }
-
-    /// Samples that every pixel has.
-    #[must_use]
-    pub const fn samples(&self) -> u32 {
-        self.samples
-    }
-
-    /// Mean of the samples of the pixel in column `x`, row `y`; black before the first.
+    /// The pixel in column `x`, row `y`.
     ///
     /// # Panics
     /// If it is outside.
     #[must_use]
-    pub fn mean(&self, x: u32, y: u32) -> LinearRgb {
-        let sum = self.sums[y as usize * self.width as usize + x as usize];
-        sum * (1.0 / self.samples.max(1) as f32)
+    pub fn at(&self, x: u32, y: u32) -> LinearRgb {
+        self.pixels[y as usize * self.width as usize + x as usize]
     }
+}
 
-    /// What a screen takes of a mean at this exposure (stops).
-    #[must_use]
-    pub fn encode(mean: LinearRgb, exposure_ev: f32) -> [u8; 3] {
-        srgb8_from_linear(mean * exposure_ev.exp2())
+/// The tiles that cover a picture, in rows.
+#[must_use]
+pub fn tiles_of([width, height]: [u32; 2]) -> Vec<Tile> {
+    let starts = |n: u32| (0..n).step_by(TILE_SIZE as usize);
+    starts(height)
+        .flat_map(|y| starts(width).map(move |x| (x, y)))
+        .map(|(x, y)| Tile::new(x, y, TILE_SIZE.min(width - x), TILE_SIZE.min(height - y)))
+        .collect()
+}
+
+/// Indices of the tiles, the ones nearest to the picture's centre first: what people look at is done
+/// first.
+#[must_use]
+pub fn centre_first(tiles: &[Tile], [width, height]: [u32; 2]) -> Vec<usize> {
+    let distance = |t: &Tile| {
+        let dx = i64::from(2 * t.x0 + t.width) - i64::from(width);
+        let dy = i64::from(2 * t.y0 + t.height) - i64::from(height);
+        dx * dx + dy * dy
+    };
+    let mut order: Vec<usize> = (0..tiles.len()).collect();
+    order.sort_by_key(|&i| distance(&tiles[i]));
+    order
+}
+
+impl Tile {
+    /// Mean of the samples of the pixel at `(x, y)` inside the tile. Before the first full sample the
+    /// nearest pixel of the preview stands for its neighbours.
+    pub(super) fn shown(&self, x: u32, y: u32) -> LinearRgb {
+        let at = |x: u32, y: u32| self.sums[(y * self.width + x) as usize];
+        if self.samples > 0 {
+            return at(x, y) * (1.0 / self.samples as f32);
+        }
+        // Tiles start at multiples of every stride that divides their size, so the pixel to the upper
+        // left on the preview's grid is inside the tile.
+        self.first_stride.map_or(LinearRgb::BLACK, |stride| {
+            at(x - x % stride, y - y % stride)
+        })
     }
 }

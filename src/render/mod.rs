@@ -2,10 +2,18 @@
 
 mod counters;
 mod film;
+mod frame;
+mod material;
 mod probe;
 mod progressive;
+mod sampling;
+mod stages;
+mod tile;
 
 pub use counters::Counters;
-pub use film::Film;
-pub use probe::{PixelStory, probe};
-pub use progressive::{PassEnd, PassReport, Progressive, Snapshot};
+pub use film::Picture;
+pub use frame::Frame;
+pub use material::amplitude;
+pub use probe::{BounceStory, HitStory, LightStory, PixelStory, Visibility, probe};
+pub use progressive::{PassEnd, Progressive, Snapshot};
+pub use sampling::pixel_sample;

@@ -2,25 +2,458 @@
 
 use std::fmt;
 
+use glam::{DVec3, Vec3};
 use serde::Serialize;
 
-use super::Snapshot;
+use super::stages::{Mirrors, Scratch, bounce, light, surface, trace};
+use super::{Counters, Frame, Snapshot};
+use crate::geometry::triangle::Watertight;
+use crate::geometry::{Hit, OriginRule, Ray, offset_origin};
+use crate::math::{LinearRgb, srgb8_from_linear};
+use crate::surface::{SurfaceInteraction, surface_at};
 
-/// Every step from a pixel's first ray to its colour; lengths in world units.
-#[derive(Debug, Clone, Serialize)]
+/// Every step from a pixel's first ray to its colour. Lengths are world units, directions unit vectors,
+/// colours linear.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PixelStory {
     /// Column and row.
     pub pixel: [u32; 2],
+    /// Method in use.
+    pub method: &'static str,
+    /// The camera ray and every mirror ray after it.
+    pub bounces: Vec<BounceStory>,
+    /// Colour of the first sample, without exposure.
+    pub color: LinearRgb,
+    /// The same as a screen takes it, without exposure.
+    pub srgb8: [u8; 3],
+}
+
+/// One ray and what it found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BounceStory {
+    /// Start.
+    pub origin: [f64; 3],
+    /// Direction.
+    pub dir: [f32; 3],
+    /// Share of this ray's colour in the pixel.
+    pub weight: f32,
+    /// What it hit; `None` if it left the scene.
+    pub hit: Option<HitStory>,
+    /// What it saw: reflected light without the mirror's share, or the background.
+    pub color: LinearRgb,
+}
+
+/// A surface point, before and after the maps.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct HitStory {
+    /// Distance.
+    pub t: f64,
+    /// Triangle index in the traced mesh.
+    pub triangle: u32,
+    /// Weights of its three corners.
+    pub barycentrics: [f32; 3],
+    /// Material name.
+    pub material: String,
+    /// The point.
+    pub p: [f64; 3],
+    /// Bound on its rounding, per axis.
+    pub p_error: [f64; 3],
+    /// Whether the eye sees the front.
+    pub front: bool,
+    /// Texture coordinate of the point; `None` if the material needs none or the mesh has none.
+    pub uv: Option<[f32; 2]>,
+    /// The same after the method moved it.
+    pub uv_moved: Option<[f32; 2]>,
+    /// Surface gradients of u and v per world unit; zero where not needed.
+    pub gradients: [[f64; 3]; 2],
+    /// Geometric normal towards the eye.
+    pub n_geo: [f32; 3],
+    /// Interpolated normal towards the eye.
+    pub n_smooth: [f32; 3],
+    /// Perturbed normal towards the eye.
+    pub n_shade: [f32; 3],
+    /// Angle between the last two, degrees.
+    pub tilt_deg: f32,
+    /// Diffuse colour at the moved coordinate.
+    pub diffuse: LinearRgb,
+    /// Light from everywhere, reflected.
+    pub ambient: LinearRgb,
+    /// Every point and directional light that is on.
+    pub lights: Vec<LightStory>,
+    /// Mirror share of the material.
+    pub reflectivity: f32,
+}
+
+/// One light at one point.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LightStory {
+    /// Name in the settings.
+    pub name: String,
+    /// Direction to it.
+    pub wi: [f32; 3],
+    /// Distance; `None` for directional lights.
+    pub distance: Option<f64>,
+    /// Irradiance on a facing surface.
+    pub irradiance: LinearRgb,
+    /// Cosine with the geometric normal.
+    pub cos_geo: f32,
+    /// Cosine with the perturbed normal.
+    pub cos_shade: f32,
+    /// What became of it.
+    pub visibility: Visibility,
+    /// Diffuse light sent to the eye.
+    pub diffuse: LinearRgb,
+    /// Specular light sent to the eye.
+    pub specular: LinearRgb,
+}
+
+/// Whether a light reaches a point.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Visibility {
+    /// It does.
+    Visible,
+    /// It is behind the geometric or the perturbed surface; no shadow ray was traced.
+    Behind,
+    /// A triangle stands in between, at this distance from the point.
+    Shadowed {
+        /// Triangle index.
+        triangle: u32,
+        /// World units.
+        t: f64,
+    },
+}
+
+/// Replays the first sample (the pixel's centre) of one pixel; `None` outside the picture.
+///
+/// Runs the very stages that render tiles, so its colour is the film's first sample to the bit.
+#[must_use]
+pub fn probe(snapshot: &Snapshot, pixel: [u32; 2]) -> Option<PixelStory> {
+    let [x, y] = pixel;
+    if x >= snapshot.size[0] || y >= snapshot.size[1] {
+        return None;
+    }
+    let frame = Frame::new(snapshot);
+    let mut scratch = Scratch::default();
+    let dir = frame.camera.direction(x as f32 + 0.5, y as f32 + 0.5);
+    scratch.queue.push(
+        Ray {
+            origin: frame.camera.origin,
+            dir,
+        },
+        0,
+        1.0,
+    );
+    scratch.radiance.push(LinearRgb::BLACK);
+    let mut bounces = Vec::new();
+    for index in 0..=frame.max_bounces {
+        let mirrors = if index == frame.max_bounces {
+            Mirrors::End
+        } else {
+            Mirrors::Follow
+        };
+        bounces.push(one_bounce(snapshot, &frame, mirrors, &mut scratch));
+        if scratch.next.rays.is_empty() {
+            break;
+        }
+        std::mem::swap(&mut scratch.queue, &mut scratch.next);
+    }
+    let color = scratch.radiance[0];
+    let method = snapshot.settings.mapping.method.name();
+    Some(PixelStory {
+        pixel,
+        method,
+        bounces,
+        color,
+        srgb8: srgb8_from_linear(color),
+    })
+}
+
+fn one_bounce(
+    snapshot: &Snapshot,
+    frame: &Frame<'_>,
+    mirrors: Mirrors,
+    scratch: &mut Scratch,
+) -> BounceStory {
+    let counters = &mut Counters::default();
+    let Scratch {
+        queue,
+        next,
+        t_max,
+        hits,
+        surfaces,
+        shadows,
+        radiance,
+        ..
+    } = scratch;
+    trace::closest_hits(frame, &queue.rays, t_max, hits, counters);
+    surface::mapped_surfaces(frame, queue, hits, surfaces, counters);
+    light::reflected_light(frame, mirrors, surfaces, shadows, counters);
+    bounce::gather(frame, mirrors, (queue, hits), surfaces, radiance);
+    next.clear();
+    if mirrors == Mirrors::Follow {
+        bounce::queue_mirrors(frame, queue, surfaces, next);
+    }
+    let (ray, hit) = (queue.rays[0], hits[0]);
+    let color = surfaces
+        .reflected
+        .first()
+        .copied()
+        .unwrap_or_else(|| frame.background(ray.dir));
+    BounceStory {
+        origin: snapshot
+            .scene
+            .normalization
+            .world_from_internal(ray.origin)
+            .to_array(),
+        dir: ray.dir.to_array(),
+        weight: queue.weights[0],
+        hit: hit.map(|hit| {
+            hit_story(
+                snapshot,
+                frame,
+                &ray,
+                &hit,
+                (&surfaces.points[0], surfaces.diffuse[0]),
+            )
+        }),
+        color,
+    }
+}
+
+fn hit_story(
+    snapshot: &Snapshot,
+    frame: &Frame<'_>,
+    ray: &Ray,
+    hit: &Hit,
+    (mapped, diffuse): (&SurfaceInteraction, LinearRgb),
+) -> HitStory {
+    let normalization = &snapshot.scene.normalization;
+    let attributes = frame.mesh.attributes[hit.prim as usize];
+    let index = usize::from(attributes.material);
+    let material = &frame.materials[index];
+    let parts = material.parts(attributes.has_uv);
+    let plain = surface_at(frame.mesh, hit, ray, parts);
+    let has_uv = parts > crate::surface::SurfaceParts::Plain;
+    let front = plain.wo.dot(plain.n_geo) >= 0.0;
+    let n_smooth = if front { plain.n_shade } else { -plain.n_shade };
+    let per_world = |g: Vec3| (g.as_dvec3() * normalization.scale).to_array();
+    HitStory {
+        t: normalization.world_length(hit.t),
+        triangle: hit.prim,
+        barycentrics: [1.0 - hit.u - hit.v, hit.u, hit.v],
+        material: snapshot.settings.materials[index].name.clone(),
+        p: normalization.world_from_internal(plain.p).to_array(),
+        p_error: (plain.p_error.as_dvec3() / normalization.scale).to_array(),
+        front,
+        uv: has_uv.then(|| plain.uv.to_array()),
+        uv_moved: has_uv.then(|| mapped.uv.to_array()),
+        gradients: [per_world(plain.grad_u), per_world(plain.grad_v)],
+        n_geo: mapped.n_geo.to_array(),
+        n_smooth: n_smooth.to_array(),
+        n_shade: mapped.n_shade.to_array(),
+        tilt_deg: angle(n_smooth, mapped.n_shade).to_degrees(),
+        diffuse,
+        ambient: diffuse * frame.ambient,
+        lights: frame
+            .lights
+            .iter()
+            .filter_map(|l| light_story(snapshot, frame, l, (mapped, diffuse, index)))
+            .collect(),
+        reflectivity: material.reflectivity,
+    }
+}
+
+fn light_story(
+    snapshot: &Snapshot,
+    frame: &Frame<'_>,
+    light: &super::frame::FrameLight,
+    (s, diffuse, material): (&SurfaceInteraction, LinearRgb, usize),
+) -> Option<LightStory> {
+    let normalization = &snapshot.scene.normalization;
+    let (wi, distance, irradiance) = light::arriving(light, s)?;
+    let (cos_geo, cos_shade) = (s.n_geo.dot(wi), s.n_shade.dot(wi));
+    let visibility = if !(cos_geo > 0.0 && cos_shade > 0.0) {
+        Visibility::Behind
+    } else if let Some(hit) = frame
+        .shadows
+        .then(|| occluder(frame, s, wi, distance))
+        .flatten()
+    {
+        Visibility::Shadowed {
+            triangle: hit.prim,
+            t: normalization.world_length(hit.t),
+        }
+    } else {
+        Visibility::Visible
+    };
+    let response = light::response(frame.model, &frame.materials[material], s, diffuse, wi);
+    let seen = if visibility == Visibility::Visible {
+        irradiance
+    } else {
+        LinearRgb::BLACK
+    };
+    Some(LightStory {
+        name: snapshot.settings.lights[light.index].name.clone(),
+        wi: wi.to_array(),
+        distance: distance
+            .is_finite()
+            .then(|| normalization.world_length(distance)),
+        irradiance,
+        cos_geo,
+        cos_shade,
+        visibility,
+        diffuse: response.diffuse * seen,
+        specular: response.specular * seen,
+    })
+}
+
+/// The nearest thing between a point and a light.
+fn occluder(frame: &Frame<'_>, s: &SurfaceInteraction, wi: Vec3, distance: f32) -> Option<Hit> {
+    let origin = offset_origin(s.p, s.p_error, s.n_geo, wi, OriginRule::Bound);
+    let tests = trace::CutoutTests::default();
+    let solid = |prim, u, v| tests.is_solid(frame, prim, u, v);
+    frame.bvh.intersect::<Watertight, _>(
+        &Ray { origin, dir: wi },
+        distance * light::LIGHT_END,
+        &solid,
+    )
+}
+
+/// Angle between unit vectors, accurate near 0 where the arc cosine is not.
+fn angle(a: Vec3, b: Vec3) -> f32 {
+    a.cross(b).length().atan2(a.dot(b))
 }
 
 impl fmt::Display for PixelStory {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "pixel {} {}", self.pixel[0], self.pixel[1])
+        writeln!(
+            f,
+            "pixel ({}, {}), method {}",
+            self.pixel[0], self.pixel[1], self.method
+        )?;
+        for (i, bounce) in self.bounces.iter().enumerate() {
+            let kind = if i == 0 {
+                "camera ray".to_owned()
+            } else {
+                format!("mirror ray {i}")
+            };
+            writeln!(
+                f,
+                "{kind}: from {} towards {}, weight {:.4}",
+                V(bounce.origin),
+                W(bounce.dir),
+                bounce.weight
+            )?;
+            match &bounce.hit {
+                None => writeln!(f, "  leaves the scene: background {}", C(bounce.color))?,
+                Some(hit) => {
+                    write!(f, "{hit}")?;
+                    writeln!(f, "  own colour    {}", C(bounce.color))?;
+                }
+            }
+        }
+        let [r, g, b] = self.srgb8;
+        writeln!(f, "colour {} linear, sRGB {r} {g} {b}", C(self.color))
     }
 }
 
-/// Replays the first sample (the pixel's centre) of one pixel; `None` outside the picture.
-#[must_use]
-pub fn probe(snapshot: &Snapshot, pixel: [u32; 2]) -> Option<PixelStory> {
-    (pixel[0] < snapshot.size[0] && pixel[1] < snapshot.size[1]).then_some(PixelStory { pixel })
+impl fmt::Display for HitStory {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let side = if self.front { "front" } else { "back" };
+        let [b0, b1, b2] = self.barycentrics;
+        writeln!(
+            f,
+            "  hit           t = {:.6}, triangle {}, material {:?}, {side} side",
+            self.t, self.triangle, self.material
+        )?;
+        writeln!(f, "  barycentrics  {b0:.6} {b1:.6} {b2:.6}")?;
+        writeln!(
+            f,
+            "  point         {}, rounding at most {:.2e}",
+            V(self.p),
+            DVec3::from(self.p_error).max_element()
+        )?;
+        if let (Some([u, v]), Some([mu, mv])) = (self.uv, self.uv_moved) {
+            writeln!(
+                f,
+                "  uv            {u:.6} {v:.6}, after mapping {mu:.6} {mv:.6} (moved {:+.6} {:+.6})",
+                mu - u,
+                mv - v
+            )?;
+            writeln!(f, "  grad u        {} per unit", V(self.gradients[0]))?;
+            writeln!(f, "  grad v        {} per unit", V(self.gradients[1]))?;
+        }
+        writeln!(f, "  n geometric   {}", W(self.n_geo))?;
+        writeln!(f, "  n smooth      {}", W(self.n_smooth))?;
+        writeln!(
+            f,
+            "  n shading     {}, tilted {:.3} degrees",
+            W(self.n_shade),
+            self.tilt_deg
+        )?;
+        writeln!(f, "  diffuse       {}", C(self.diffuse))?;
+        writeln!(f, "  ambient       {}", C(self.ambient))?;
+        for light in &self.lights {
+            write!(f, "{light}")?;
+        }
+        if self.reflectivity > 0.0 {
+            writeln!(f, "  mirror share  {:.3}", self.reflectivity)?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for LightStory {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "  light {:?}: towards {}", self.name, W(self.wi))?;
+        if let Some(distance) = self.distance {
+            write!(f, ", {distance:.6} away")?;
+        }
+        writeln!(f, ", irradiance {}", C(self.irradiance))?;
+        write!(
+            f,
+            "    cosines {:.4} geometric, {:.4} shading: ",
+            self.cos_geo, self.cos_shade
+        )?;
+        match self.visibility {
+            Visibility::Visible => writeln!(
+                f,
+                "diffuse {}, specular {}",
+                C(self.diffuse),
+                C(self.specular)
+            ),
+            Visibility::Behind => writeln!(f, "behind the surface, no shadow ray"),
+            Visibility::Shadowed { triangle, t } => {
+                writeln!(f, "shadowed by triangle {triangle} at {t:.6}")
+            }
+        }
+    }
+}
+
+/// Prints a point.
+struct V([f64; 3]);
+/// Prints a direction.
+struct W([f32; 3]);
+/// Prints a colour.
+struct C(LinearRgb);
+
+impl fmt::Display for V {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "({:.6}, {:.6}, {:.6})", self.0[0], self.0[1], self.0[2])
+    }
+}
+impl fmt::Display for W {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "({:+.5}, {:+.5}, {:+.5})",
+            self.0[0], self.0[1], self.0[2]
+        )
+    }
+}
+impl fmt::Display for C {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "({:.5}, {:.5}, {:.5})", self.0.r, self.0.g, self.0.b)
+    }
 }

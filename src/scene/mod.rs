@@ -19,7 +19,7 @@ use crate::geometry::{Normalization, TriangleMesh};
 use crate::texture::MapImage;
 
 pub use camera::{Camera, CameraAxes};
-pub use open::open;
+pub use open::{built_in_names, open};
 pub use settings::{Background, DisplaySettings, RenderSettings, ShadingModel, ShadingSettings};
 pub use warning::{LoadError, LoadWarning};
 
@@ -52,7 +52,7 @@ pub struct ModelFacts {
 }
 
 /// What is slow to build. It never changes; typed maps made on demand change no pixel.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Scene {
     /// Shown in the window's title.
     pub name: String,

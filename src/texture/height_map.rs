@@ -116,20 +116,17 @@ impl HeightMap {
         }
     }
 
-    /// The report's central differences (2.15), continuous between texels.
+    /// The report's central differences (2.15) per picture width and height, continuous between texels.
     ///
     /// Differences of the bilinear height one texel to either side equal the bilinear interpolation of
     /// the texels' own central differences.
     #[must_use]
-    pub fn sample_central(&self, st: Vec2, wrap: Wrap) -> HeightSlope {
+    pub fn central_slope(&self, st: Vec2, wrap: Wrap) -> Vec2 {
         let size = self.size();
         let (ds, dt) = (Vec2::new(1.0 / size.x, 0.0), Vec2::new(0.0, 1.0 / size.y));
         let right = self.sample(st + ds, wrap) - self.sample(st - ds, wrap);
         let down = self.sample(st + dt, wrap) - self.sample(st - dt, wrap);
-        HeightSlope {
-            height: self.sample(st, wrap),
-            slope_st: Vec2::new(right, down) * 0.5 * size,
-        }
+        Vec2::new(right, down) * 0.5 * size
     }
 
     fn size(&self) -> Vec2 {

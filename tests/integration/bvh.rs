@@ -1,35 +1,29 @@
 //! The hierarchy against testing every triangle, on easy and on nasty meshes.
 
 use glam::Vec3;
-use reliefscope::geometry::bvh::{AcceptAll, Bvh, HitFilter};
-use reliefscope::geometry::triangle::{TriangleTest, Watertight};
+use reliefscope::geometry::bvh::{AcceptAll, Bvh};
+use reliefscope::geometry::triangle::{TriangleHit, TriangleTest, Watertight};
 use reliefscope::geometry::{Hit, Ray, RaySlabs, TriangleMesh};
 
 use crate::shapes::{Random, mesh, mixed_ray, placed, plane, random_soup, soup, sphere, torus};
 
-/// Every triangle tested in turn.
-fn brute_force(mesh: &TriangleMesh, ray: &Ray, t_max: f32, filter: &impl HitFilter) -> Option<Hit> {
-    let reach = mesh
-        .positions
-        .iter()
-        .fold(0.0_f32, |reach, p| reach.max(p.abs().max_element()));
+/// All hits of a ray, the closest first: every triangle tested in turn.
+fn brute_force(mesh: &TriangleMesh, reach: f32, ray: &Ray) -> Vec<Hit> {
     let (test, slabs) = (Watertight::new(ray), RaySlabs::new(ray, reach));
-    let mut best: Option<Hit> = None;
-    for prim in 0..mesh.len() as u32 {
-        if let Some(hit) = test.intersect(&slabs, &mesh.corners(prim))
-            && hit.t < best.map_or(t_max, |b| b.t)
-            && filter.accept(prim, hit.u, hit.v)
-        {
-            best = Some(Hit {
-                t: hit.t,
-                prim,
-                sub: 0,
-                u: hit.u,
-                v: hit.v,
-            });
-        }
-    }
-    best
+    let hit = |prim| {
+        let TriangleHit { t, u, v } = test.intersect(&slabs, &mesh.corners(prim))?;
+        Some(Hit {
+            t,
+            prim,
+            sub: 0,
+            u,
+            v,
+        })
+    };
+    let mut hits: Vec<_> = (0..mesh.len() as u32).filter_map(hit).collect();
+    // Stable: the lowest index stays first among equals.
+    hits.sort_by(|a, b| a.t.total_cmp(&b.t));
+    hits
 }
 
 /// All that must be equal, as bits.
@@ -43,20 +37,13 @@ fn assert_equals_brute_force(name: &str, mesh: &TriangleMesh, rays: usize) {
     let mut random = Random::new(7);
     let mut hits = 0;
     for i in 0..rays {
-        let ray = mixed_ray(mesh, &mut random);
-        let open = brute_force(mesh, &ray, f32::INFINITY, &AcceptAll);
-        let found = bvh.intersect::<Watertight, _>(&ray, f32::INFINITY, &AcceptAll);
-        assert_eq!(bits(found), bits(open), "{name}, ray {i}: {ray:?}");
-        assert_eq!(
-            bvh.occluded::<Watertight, _>(&ray, f32::INFINITY, &AcceptAll),
-            open.is_some(),
-            "{name}, any hit, ray {i}: {ray:?}"
-        );
-        let Some(hit) = open else { continue };
-        hits += 1;
-        // Just excluded, just included.
-        for t_max in [hit.t, hit.t.next_up()] {
-            let expected = brute_force(mesh, &ray, t_max, &AcceptAll);
+        let ray = mixed_ray(mesh, bvh.bounds(), &mut random);
+        let expected = brute_force(mesh, bvh.reach(), &ray);
+        hits += usize::from(!expected.is_empty());
+        // All, the closest just excluded, just included.
+        let closest = expected.first().map_or(1.0, |hit| hit.t);
+        for t_max in [f32::INFINITY, closest, closest.next_up()] {
+            let expected = expected.iter().find(|hit| hit.t < t_max).copied();
             let found = bvh.intersect::<Watertight, _>(&ray, t_max, &AcceptAll);
             assert_eq!(
                 bits(found),
@@ -140,17 +127,20 @@ fn filter_makes_holes_for_closest_and_any_hit() {
     let mesh = random_soup(200, 0.5, 5);
     let bvh = Bvh::build(&mesh);
     let mut random = Random::new(9);
-    let filter = |prim: u32, u: f32, v: f32| prim % 3 != 0 && u + v < 0.7;
+    let filter = |prim: u32, u: f32, v: f32| !prim.is_multiple_of(3) && u + v < 0.7;
     let mut fewer = 0;
     for _ in 0..20_000 {
-        let ray = mixed_ray(&mesh, &mut random);
-        let expected = brute_force(&mesh, &ray, 2.0, &filter);
+        let ray = mixed_ray(&mesh, bvh.bounds(), &mut random);
+        let all = brute_force(&mesh, bvh.reach(), &ray);
+        let expected = all
+            .iter()
+            .find(|hit| hit.t < 2.0 && filter(hit.prim, hit.u, hit.v))
+            .copied();
         let found = bvh.intersect::<Watertight, _>(&ray, 2.0, &filter);
         assert_eq!(bits(found), bits(expected), "{ray:?}");
         let occluded = bvh.occluded::<Watertight, _>(&ray, 2.0, &filter);
         assert_eq!(occluded, expected.is_some(), "{ray:?}");
-        let all = bvh.intersect::<Watertight, _>(&ray, 2.0, &AcceptAll);
-        fewer += usize::from(bits(all) != bits(expected));
+        fewer += usize::from(bits(all.first().copied()) != bits(expected));
     }
     assert!(fewer > 1000, "the filter removed only {fewer} hits");
 }
@@ -160,7 +150,9 @@ fn many_rays_equal_single_rays() {
     let mesh = torus(24, 12);
     let bvh = Bvh::build(&mesh);
     let mut random = Random::new(13);
-    let rays: Vec<_> = (0..5000).map(|_| mixed_ray(&mesh, &mut random)).collect();
+    let rays: Vec<_> = (0..5000)
+        .map(|_| mixed_ray(&mesh, bvh.bounds(), &mut random))
+        .collect();
     let t_max: Vec<_> = rays.iter().map(|_| random.unit() * 4.0).collect();
     let mut hits = vec![None; rays.len()];
     let mut occluded = vec![false; rays.len()];
@@ -197,7 +189,7 @@ fn shuffled_builds_give_the_same_surface() {
         other.validate(&mesh).unwrap();
         let mut random = Random::new(17 + seed);
         for _ in 0..10_000 {
-            let ray = mixed_ray(&original, &mut random);
+            let ray = mixed_ray(&original, bvh.bounds(), &mut random);
             let a = bvh.intersect::<Watertight, _>(&ray, f32::INFINITY, &AcceptAll);
             let b = other.intersect::<Watertight, _>(&ray, f32::INFINITY, &AcceptAll);
             assert_eq!(
@@ -286,7 +278,7 @@ fn degenerate_sets_build_valid_trees() {
         assert_eq!(stats.triangles, mesh.len());
         assert!(stats.max_depth < 100, "case {case}: {stats:?}");
         for _ in 0..200 {
-            let ray = mixed_ray(mesh, &mut random);
+            let ray = mixed_ray(mesh, bvh.bounds(), &mut random);
             if let Some(hit) = bvh.intersect::<Watertight, _>(&ray, f32::INFINITY, &AcceptAll) {
                 assert!(hit.t > 0.0 && hit.t.is_finite() && hit.u.is_finite() && hit.v.is_finite());
             }

@@ -1,6 +1,25 @@
-//! Every test that needs more than one room, in one binary: one link.
+//! One binary for all integration tests, so that they link once.
 
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that panics has failed; the configuration exempts only the test functions themselves"
+)]
+
+mod answers;
 mod bvh;
+mod cli;
+mod golden;
+mod layering;
 mod load_mtl;
+mod load_obj;
+mod mapping;
+mod metrics;
 mod numerics;
+mod oracle;
+mod progressive;
+mod reference;
+mod scene_file;
 mod shapes;
+mod support;
+#[cfg(feature = "viewer")]
+mod viewer;

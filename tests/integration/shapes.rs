@@ -3,7 +3,7 @@
 use std::f32::consts::TAU;
 
 use glam::Vec3;
-use reliefscope::geometry::{Ray, TriangleMesh};
+use reliefscope::geometry::{Aabb, Ray, TriangleMesh};
 use reliefscope::math::{hash_u32, unit_f32_from_bits};
 
 /// Random numbers from a counter.
@@ -182,11 +182,11 @@ pub fn towards(origin: Vec3, target: Vec3) -> Ray {
     }
 }
 
-/// Rays that are hard on a hierarchy as well as ordinary ones.
-pub fn mixed_ray(mesh: &TriangleMesh, random: &mut Random) -> Ray {
-    let size = mesh.bounds().extent().max_element().max(1e-30);
+/// Rays that are hard on a hierarchy as well as ordinary ones. `bounds` are the mesh's.
+pub fn mixed_ray(mesh: &TriangleMesh, bounds: Aabb, random: &mut Random) -> Ray {
+    let size = bounds.extent().max_element().max(1e-30);
     let vertex = |random: &mut Random| random.pick(&mesh.positions);
-    let anywhere = |random: &mut Random| mesh.bounds().center() + random.cube() * size;
+    let anywhere = |random: &mut Random| bounds.center() + random.cube() * size;
     match random.below(6) {
         // Parallel to an axis, through a vertex: in the planes of boxes.
         0 => {

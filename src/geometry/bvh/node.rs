@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 
-use crate::geometry::triangle::{Corners8, LANES};
-use crate::geometry::{Aabb, RaySlabs, TriangleMesh, slabs};
+use crate::geometry::lanes::F32x8;
+use crate::geometry::triangle::{Corners8, LANES, corners_of};
+use crate::geometry::{Aabb, RaySlabs, TriangleMesh};
 
 /// Marks an unused lane of a [`Block`].
 pub(super) const NO_PRIM: u32 = u32::MAX;
@@ -99,23 +100,20 @@ impl Node {
     /// The same operations as [`RaySlabs::interval`], so that intervals nest bit for bit.
     #[inline(always)]
     pub(super) fn hit_lanes(&self, ray: &RaySlabs, t_max: f32) -> (u32, [f32; LANES]) {
-        let (mut near, mut far) = ([0.0; LANES], [t_max; LANES]);
+        let (mut near, mut far) = (F32x8::splat(0.0), F32x8::splat(t_max));
+        let (inv_dir, shifts) = (ray.inv_dir.to_array(), ray.shifts());
         for axis in 0..3 {
             let negative = ray.negative[axis];
-            let first = &self.planes[axis][usize::from(negative)];
-            let last = &self.planes[axis][usize::from(!negative)];
-            let inv = ray.inv_dir[axis];
-            let (near_shift, far_shift) = (ray.near_shift[axis], ray.far_shift[axis]);
-            for lane in 0..LANES {
-                near[lane] = slabs::larger(first[lane] * inv - near_shift, near[lane]);
-                far[lane] = slabs::smaller(last[lane] * inv - far_shift, far[lane]);
-            }
+            let first = F32x8::load(&self.planes[axis][usize::from(negative)]);
+            let last = F32x8::load(&self.planes[axis][usize::from(!negative)]);
+            let inv = F32x8::splat(inv_dir[axis]);
+            let [near_shift, far_shift] = shifts[axis].map(F32x8::splat);
+            near = (first * inv - near_shift).max(near);
+            far = (last * inv - far_shift).min(far);
         }
-        let mut mask = 0;
-        for lane in 0..LANES {
-            mask |= u32::from(near[lane] <= far[lane]) << lane;
-        }
-        (mask, near)
+        // Written so that NaN means a visit, which changes no answer.
+        let mask = !near.greater(far) & ((1 << LANES) - 1);
+        (mask, near.to_array())
     }
 }
 
@@ -147,14 +145,6 @@ impl Block {
         block
     }
 
-    /// Corners of one lane.
-    #[inline(always)]
-    pub(super) fn corners(&self, lane: usize) -> [Vec3; 3] {
-        self.corners
-            .each_ref()
-            .map(|[x, y, z]| Vec3::new(x[lane], y[lane], z[lane]))
-    }
-
     /// Whether the same triangles are in the same lanes.
     pub(super) fn same_triangles(&self, other: &Self) -> bool {
         // Not `==`: unused lanes hold NaN.
@@ -167,9 +157,39 @@ impl Block {
             .iter()
             .enumerate()
             .filter(|(_, prim)| **prim != NO_PRIM)
-            .map(|(lane, &prim)| (prim, self.corners(lane)))
+            .map(|(lane, &prim)| (prim, corners_of(&self.corners, lane)))
     }
 }
 
 // Four and five cache lines; a field more would cost one in eight.
 const _: () = assert!(size_of::<Node>() == 256 && size_of::<Block>() == 320);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Ray;
+
+    #[test]
+    fn unused_lanes_are_missed_and_used_ones_agree_with_the_scalar_test() {
+        let mut node = Node::empty();
+        let bounds = Aabb {
+            min: Vec3::new(-1.0, 0.0, 2.0),
+            max: Vec3::new(1.0, 0.0, 3.0),
+        };
+        node.set(5, bounds, ChildRef::block(0));
+        for dir in [Vec3::X, -Vec3::X, -Vec3::Z, Vec3::new(0.6, -0.8, 0.0)] {
+            for origin in [
+                Vec3::new(0.0, 0.0, 2.5),
+                Vec3::new(-1.2, 1.6, 2.0),
+                Vec3::ONE,
+            ] {
+                let ray = RaySlabs::new(&Ray { origin, dir }, 3.0);
+                let (near, far) = ray.interval(bounds.min, bounds.max);
+                let (mask, entry) = node.hit_lanes(&ray, f32::INFINITY);
+                let hit = near <= far && far >= 0.0;
+                assert_eq!(mask, u32::from(hit) << 5, "{origin} {dir}");
+                assert!(!hit || entry[5] == near.max(0.0));
+            }
+        }
+    }
+}

@@ -1,13 +1,15 @@
 //! The watertight test of Woop, Benthin and Wald.
 
+use std::ops::{Mul, Sub};
+
 use glam::Vec3;
 
-use super::{Corners8, LANES, TriangleHit, TriangleTest};
+use super::{Corners8, LANES, TriangleHit, TriangleTest, corners_of, take_lowest};
+use crate::geometry::lanes::F32x8;
 use crate::geometry::slabs::{larger, smaller};
 use crate::geometry::{Ray, RaySlabs};
-use crate::math::gamma;
 
-/// A coordinate axis. An enum rather than a number, so that indexing needs no bounds check.
+/// A coordinate axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Axis {
     X,
@@ -17,185 +19,264 @@ enum Axis {
 
 /// Watertight test: a ray through a closed mesh cannot slip between two triangles.
 ///
-/// The corners are translated to the ray's origin and sheared so that the ray becomes an axis; three 2D
-/// edge functions then say on which side of each edge it passes. Two triangles that share an edge compute
-/// the same number with opposite signs, because rounding is symmetric and monotone (and
-/// a fused multiply-add would break just that). Where one is exactly 0, all are computed again in
-/// `f64`, where the products of `f32` are exact.
+/// *Inside or not* is the paper's. The corners are translated to the ray's origin and sheared so that
+/// the ray becomes an axis; three 2D edge functions in `f32` say on which side of each edge it passes.
+/// Two triangles that share an edge compute the same number with opposite signs, because rounding is
+/// symmetric and monotone (a fused multiply-add would break just that). Where one is exactly 0, all
+/// are computed again in `f64`, where the products of `f32` are exact.
 ///
-/// Two additions to the paper. The hit is clipped to the interval of the triangle's own box
-/// ([`RaySlabs`]): a no-op for well-shaped triangles, it keeps the `t` of a needle seen edge-on, whose
-/// weights are mostly rounding, near the triangle, and makes any hierarchy agree with testing every
-/// triangle, bit for bit. And where the ray starts inside that box, `t` must exceed its own
-/// rounding bound, without which a ray leaving a large triangle could hit it again.
+/// *Where* is computed in `f64` from the corners themselves, for the few triangles that are met:
+/// sheared `f32` weights lose `tan(incidence)` roundings of `t`, and more on slivers. So `t` is good
+/// to one rounding of the result, its sign is right (a ray that leaves a triangle from a point off its
+/// plane does not meet it again, without the error term of PBRT 4th ed., §6.8.7), and `u`, `v` belong
+/// to the same point.
 ///
-/// Accuracy of `t`: `16ε(|O| + |tD|)` up to 85° incidence, held by `numerics::distance_error_is_bounded`.
+/// Last, `t` is clipped to the interval of the triangle's own box ([`RaySlabs`]). That changes
+/// nothing unless the triangle is seen so nearly edge-on that inside is decided by rounding; then it
+/// keeps the hit near the triangle. It makes any hierarchy agree with testing every triangle, bit for bit.
 ///
-/// Sources: Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection", JCGT 2(1);
-/// bound on `t`: PBRT 4th ed., §6.8.7.
+/// Source: Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection", JCGT 2(1); the plane
+/// and the weights as Möller and Trumbore 1997. Held by `numerics`.
 #[derive(Debug, Clone, Copy)]
 pub struct Watertight {
+    ray: Ray,
+    /// The axis of the largest direction component. It becomes the last of [`Axis::last`].
+    along: Axis,
+    /// The ray's origin on the permuted axes.
     origin: [f32; 3],
-    /// The two axes of the 2D test, then the axis of the largest direction component.
-    axes: [Axis; 3],
-    /// `(d_x / d_z, d_y / d_z, 1 / d_z)` on those axes.
-    shear: [f32; 3],
+    /// `(d_x / d_z, d_y / d_z)` on the permuted axes.
+    shear: [f32; 2],
 }
 
-/// Corners in ray space: `x` and `y` sheared, `z` translated but not scaled.
-struct RaySpace {
-    x: [f32; 3],
-    y: [f32; 3],
-    z: [f32; 3],
-}
-
-/// Weights of the three corners, and the one reciprocal needed for the bound on `t`.
-struct Weights {
-    b: [f32; 3],
-    inv_det: f32,
-    largest_edge: f32,
-}
-
-impl Watertight {
-    /// Translates and shears. `get(vertex, axis)` reads a coordinate.
+impl Axis {
+    /// Axis of the largest component.
     #[inline(always)]
-    fn ray_space(&self, get: impl Fn(usize, Axis) -> f32) -> RaySpace {
-        let [kx, ky, kz] = self.axes;
-        let mut corners = RaySpace {
-            x: [0.0; 3],
-            y: [0.0; 3],
-            z: [0.0; 3],
-        };
-        for vertex in 0..3 {
-            let z = get(vertex, kz) - self.origin[kz as usize];
-            corners.x[vertex] = (get(vertex, kx) - self.origin[kx as usize]) - self.shear[0] * z;
-            corners.y[vertex] = (get(vertex, ky) - self.origin[ky as usize]) - self.shear[1] * z;
-            corners.z[vertex] = z;
+    fn of_largest(v: Vec3) -> Self {
+        let [x, y, z] = v.abs().to_array();
+        if x > y && x > z {
+            Self::X
+        } else if y > z {
+            Self::Y
+        } else {
+            Self::Z
         }
-        corners
+    }
+
+    /// Turns the axes round until this one is the last.
+    #[inline(always)]
+    fn last<T>(self, [x, y, z]: [T; 3]) -> [T; 3] {
+        match self {
+            Self::X => [y, z, x],
+            Self::Y => [z, x, y],
+            Self::Z => [x, y, z],
+        }
     }
 }
 
-/// Twice the signed areas that the ray's axis spans with each edge; the edge opposite vertex `i` at `i`.
+/// One sheared coordinate. This and [`edge`] are all the arithmetic that decides inside.
 #[inline(always)]
-fn edges([x, y]: [&[f32; 3]; 2]) -> [f32; 3] {
-    [
-        x[2] * y[1] - y[2] * x[1],
-        x[0] * y[2] - y[0] * x[2],
-        x[1] * y[0] - y[1] * x[0],
-    ]
+fn sheared<T: Copy + Mul<Output = T> + Sub<Output = T>>(p: T, origin: T, shear: T, z: T) -> T {
+    (p - origin) - shear * z
+}
+
+/// Twice the signed area that the origin spans with the edge from `p` to `q`.
+#[inline(always)]
+fn edge<T: Mul<Output = T> + Sub<Output = T>>([px, py]: [T; 2], [qx, qy]: [T; 2]) -> T {
+    px * qy - py * qx
 }
 
 /// Whether no two numbers have opposite signs. Zero has either; NaN is rejected.
 #[inline(always)]
-fn same_side([u, v, w]: [f32; 3]) -> bool {
-    ((u >= 0.0) & (v >= 0.0) & (w >= 0.0)) | ((u <= 0.0) & (v <= 0.0) & (w <= 0.0))
+fn same_side(e: [f64; 3]) -> bool {
+    e.iter().all(|&e| e >= 0.0) || e.iter().all(|&e| e <= 0.0)
 }
 
-/// Weights in `f32`; `None` where the triangle is seen exactly edge-on.
+/// Inside or not where an edge function is 0 in `f32`: decided again, exactly.
+///
+/// A triangle without area seen from the ray is outside: its neighbours cover the place.
+#[cold]
+fn inside_in_f64(corners: [[f32; 2]; 3]) -> bool {
+    let [a, b, c] = corners.map(|corner| corner.map(f64::from));
+    let e = [edge(c, b), edge(a, c), edge(b, a)];
+    same_side(e) && e != [0.0; 3]
+}
+
+/// `t`, `u`, `v` where the ray meets the plane; NaN or infinite if it is parallel.
 #[inline(always)]
-fn weights(e: [f32; 3]) -> Option<Weights> {
-    let det = (e[0] + e[1]) + e[2];
-    let inv_det = 1.0 / det;
-    (det != 0.0).then(|| Weights {
-        b: e.map(|e| e * inv_det),
-        inv_det: inv_det.abs(),
-        largest_edge: e[0].abs().max(e[1].abs()).max(e[2].abs()),
-    })
+fn meet_plane(ray: &Ray, corners: &[Vec3; 3]) -> [f64; 3] {
+    let [a, b, c] = corners.map(|p| p.as_dvec3());
+    let (origin, dir) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
+    let (ab, ac, from_a) = (b - a, c - a, origin - a);
+    let p = dir.cross(ac);
+    let q = from_a.cross(ab);
+    let inv_det = 1.0 / ab.dot(p);
+    [
+        ac.dot(q) * inv_det,
+        from_a.dot(p) * inv_det,
+        dir.dot(q) * inv_det,
+    ]
 }
 
-/// Weights where an edge function is 0 in `f32`: signs are decided again, exactly.
-#[cold]
-fn weights_in_f64(corners: &RaySpace) -> Option<Weights> {
-    let x = corners.x.map(f64::from);
-    let y = corners.y.map(f64::from);
-    let e = [
-        x[2] * y[1] - y[2] * x[1],
-        x[0] * y[2] - y[0] * x[2],
-        x[1] * y[0] - y[1] * x[0],
-    ];
-    let inside = e.iter().all(|&e| e >= 0.0) || e.iter().all(|&e| e <= 0.0);
-    let det = (e[0] + e[1]) + e[2];
-    (inside && det != 0.0).then(|| Weights {
-        b: e.map(|e| (e / det) as f32),
-        inv_det: (1.0 / det).abs() as f32,
-        largest_edge: e[0].abs().max(e[1].abs()).max(e[2].abs()) as f32,
-    })
-}
+impl Watertight {
+    /// Whether the ray passes inside the triangle, on either side of its origin.
+    #[inline]
+    fn inside(&self, corners: &[Vec3; 3]) -> bool {
+        let [ox, oy, oz] = self.origin;
+        let [a, b, c] = corners.map(|corner| {
+            let [x, y, z] = self.along.last(corner.to_array());
+            let z = z - oz;
+            [
+                sheared(x, ox, self.shear[0], z),
+                sheared(y, oy, self.shear[1], z),
+            ]
+        });
+        let e = [edge(c, b), edge(a, c), edge(b, a)];
+        if e.contains(&0.0) {
+            return inside_in_f64([a, b, c]);
+        }
+        same_side(e.map(f64::from))
+    }
 
-/// Bound on the rounding error of `t` (PBRT 4th ed., §6.8.7). `sz` is the magnitude of `1 / d_z`.
-#[cold]
-fn distance_error(corners: &RaySpace, weights: &Weights, sz: f32) -> f32 {
-    let largest = |c: &[f32; 3]| c[0].abs().max(c[1].abs()).max(c[2].abs());
-    let (max_x, max_y) = (largest(&corners.x), largest(&corners.y));
-    let max_z = largest(&corners.z) * sz;
-    let delta_x = gamma(5) * (max_x + max_z);
-    let delta_y = gamma(5) * (max_y + max_z);
-    let delta_z = gamma(3) * max_z;
-    let delta_e = 2.0 * (gamma(2) * max_x * max_y + delta_y * max_x + delta_x * max_y);
-    let max_e = weights.largest_edge;
-    3.0 * (gamma(3) * max_e * max_z + delta_e * max_z + delta_z * max_e) * weights.inv_det
+    /// One corner of eight triangles, translated and sheared.
+    #[inline(always)]
+    fn shear8(&self, p: &[[f32; LANES]; 3]) -> [F32x8; 2] {
+        let [x, y, z] = self.along.last(p.each_ref());
+        let [ox, oy, oz] = self.origin.map(F32x8::splat);
+        let [sx, sy] = self.shear.map(F32x8::splat);
+        let (x, y, z) = (F32x8::load(x), F32x8::load(y), F32x8::load(z) - oz);
+        [sheared(x, ox, sx, z), sheared(y, oy, sy, z)]
+    }
+
+    /// [`Self::inside`] for each lane, as bits: inside for certain, and to be decided in `f64`.
+    #[inline(always)]
+    fn inside_block(&self, corners: &Corners8) -> [u32; 2] {
+        let [a, b, c] = corners;
+        let [a, b, c] = [self.shear8(a), self.shear8(b), self.shear8(c)];
+        let zero = F32x8::splat(0.0);
+        let [u, v, w] = [edge(c, b), edge(a, c), edge(b, a)];
+        let above = u.greater(zero) & v.greater(zero) & w.greater(zero);
+        let below = zero.greater(u) & zero.greater(v) & zero.greater(w);
+        let on_edge = u.equal(zero) | v.equal(zero) | w.equal(zero);
+        [above | below, on_edge]
+    }
+
+    /// Where the ray meets a triangle that it passes inside of; `None` if that is not ahead.
+    #[inline(always)]
+    fn locate(&self, slabs: &RaySlabs, corners: &[Vec3; 3]) -> Option<TriangleHit> {
+        let [p0, p1, p2] = *corners;
+        let (near, far) = slabs.interval(p0.min(p1).min(p2), p0.max(p1).max(p2));
+        let [t, u, v] = meet_plane(&self.ray, corners).map(|x| x as f32);
+        // NaN, of a parallel ray, becomes the near end and weights of 0.
+        let t = smaller(larger(t, near), far);
+        let u = smaller(larger(u, 0.0), 1.0);
+        let v = smaller(larger(v, 0.0), 1.0 - u);
+        (near <= far && t > 0.0).then_some(TriangleHit { t, u, v })
+    }
 }
 
 impl TriangleTest for Watertight {
     #[inline]
     fn new(ray: &Ray) -> Self {
-        let dir = ray.dir.to_array();
-        let [x, y, z] = dir.map(f32::abs);
-        let axes = if x > y && x > z {
-            [Axis::Y, Axis::Z, Axis::X]
-        } else if y > z {
-            [Axis::Z, Axis::X, Axis::Y]
-        } else {
-            [Axis::X, Axis::Y, Axis::Z]
-        };
-        let [kx, ky, kz] = axes.map(|axis| dir[axis as usize]);
+        let along = Axis::of_largest(ray.dir);
+        let [dx, dy, dz] = along.last(ray.dir.to_array());
         Self {
-            origin: ray.origin.to_array(),
-            axes,
-            shear: [kx / kz, ky / kz, 1.0 / kz],
+            ray: *ray,
+            along,
+            origin: along.last(ray.origin.to_array()),
+            shear: [dx / dz, dy / dz],
         }
     }
 
     #[inline]
     fn intersect(&self, slabs: &RaySlabs, corners: &[Vec3; 3]) -> Option<TriangleHit> {
-        let arrays = corners.map(|c| c.to_array());
-        let space = self.ray_space(|vertex, axis| arrays[vertex][axis as usize]);
-        let e = edges([&space.x, &space.y]);
-        if !same_side(e) {
-            return None;
-        }
-        let weights = if e[0] == 0.0 || e[1] == 0.0 || e[2] == 0.0 {
-            weights_in_f64(&space)?
-        } else {
-            weights(e)?
-        };
-        let (b, z, sz) = (weights.b, space.z, self.shear[2]);
-        let t = ((b[0] * z[0] + b[1] * z[1]) + b[2] * z[2]) * sz;
-
-        let [p0, p1, p2] = *corners;
-        let (near, far) = slabs.interval(p0.min(p1).min(p2), p0.max(p1).max(p2));
-        let clipped = smaller(larger(t, near), far);
-        let lost_in_rounding = near <= 0.0 && clipped <= distance_error(&space, &weights, sz.abs());
-        let hit = t.is_finite() && near <= far && clipped > 0.0 && !lost_in_rounding;
-        hit.then_some(TriangleHit {
-            t: clipped,
-            u: b[1],
-            v: b[2],
-        })
+        self.inside(corners)
+            .then(|| self.locate(slabs, corners))
+            .flatten()
     }
 
-    #[inline]
-    fn candidates(&self, corners: &Corners8) -> u32 {
-        let mut inside = [false; LANES];
-        for (lane, inside) in inside.iter_mut().enumerate() {
-            let space = self.ray_space(|vertex, axis| corners[vertex][axis as usize][lane]);
-            *inside = same_side(edges([&space.x, &space.y]));
+    #[inline(always)]
+    fn intersect_block(
+        &self,
+        slabs: &RaySlabs,
+        corners: &Corners8,
+        mut visit: impl FnMut(usize, TriangleHit) -> bool,
+    ) -> bool {
+        let [certain, on_edge] = self.inside_block(corners);
+        let mut mask = certain | on_edge;
+        while mask != 0 {
+            let lane = take_lowest(&mut mask);
+            let triangle = corners_of(corners, lane);
+            if (on_edge >> lane) & 1 != 0 && !self.inside(&triangle) {
+                continue;
+            }
+            if let Some(hit) = self.locate(slabs, &triangle)
+                && visit(lane, hit)
+            {
+                return true;
+            }
         }
-        let mut mask = 0;
-        for (lane, &inside) in inside.iter().enumerate() {
-            mask |= u32::from(inside) << lane;
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hit(origin: Vec3, dir: Vec3, corners: [Vec3; 3]) -> Option<TriangleHit> {
+        let ray = Ray { origin, dir };
+        let slabs = RaySlabs::new(&ray, 10.0);
+        Watertight::new(&ray).intersect(&slabs, &corners)
+    }
+
+    const TRIANGLE: [Vec3; 3] = [Vec3::ZERO, Vec3::X, Vec3::Y];
+
+    #[test]
+    fn reports_distance_and_weights_on_both_sides() {
+        for side in [1.0, -1.0] {
+            let at = hit(Vec3::new(0.25, 0.5, 2.0 * side), Vec3::Z * -side, TRIANGLE);
+            let expected = TriangleHit {
+                t: 2.0,
+                u: 0.25,
+                v: 0.5,
+            };
+            assert_eq!(at, Some(expected));
         }
-        mask
+        assert_eq!(hit(Vec3::new(0.25, 0.5, 2.0), Vec3::Z, TRIANGLE), None);
+        assert_eq!(hit(Vec3::new(0.25, 0.5, 0.0), Vec3::Z, TRIANGLE), None);
+        assert_eq!(hit(Vec3::new(0.7, 0.7, 2.0), -Vec3::Z, TRIANGLE), None);
+    }
+
+    #[test]
+    fn edges_and_corners_belong_to_the_triangle() {
+        for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.5), (0.5, 0.0)] {
+            let at = hit(Vec3::new(x, y, 1.0), -Vec3::Z, TRIANGLE);
+            assert_eq!(at.map(|h| [h.t, h.u, h.v]), Some([1.0, x, y]));
+        }
+    }
+
+    #[test]
+    fn a_ray_in_the_plane_and_triangles_without_area_are_missed() {
+        let into_the_edge = Vec3::new(1.0, 0.5, 0.0).normalize();
+        assert_eq!(hit(Vec3::new(-1.0, 0.25, 0.0), Vec3::X, TRIANGLE), None);
+        assert_eq!(
+            hit(Vec3::new(-1.0, 0.0, 0.0), into_the_edge, TRIANGLE),
+            None
+        );
+        assert_eq!(hit(-Vec3::Z, Vec3::Z, [Vec3::ZERO; 3]), None);
+        assert_eq!(
+            hit(-Vec3::Z, Vec3::Z, [Vec3::ZERO, Vec3::X, Vec3::X * 2.0]),
+            None
+        );
+    }
+
+    #[test]
+    fn edge_functions_that_underflow_are_decided_in_f64() {
+        // Products of these lengths are below the smallest f32.
+        let corners = TRIANGLE.map(|c| c * 1e-25);
+        let from = |x: f32, y: f32| hit(Vec3::new(x, y, 1.0) * 1e-25, -Vec3::Z, corners);
+        assert!(from(0.25, 0.25).is_some_and(|h| (h.u - 0.25).abs() < 1e-6));
+        assert_eq!(from(0.7, 0.7), None);
+        assert_eq!(from(-0.1, 0.3), None);
     }
 }

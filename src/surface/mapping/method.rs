@@ -145,3 +145,48 @@ impl Method {
         matches!(self, Self::Parallax | Self::ParallaxLimited)
     }
 }
+
+/// Which kinds of map a method can make use of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MethodReads {
+    /// Height maps.
+    pub height: bool,
+    /// Tangent-space normal maps.
+    pub normal: bool,
+    /// Slope maps.
+    pub slope: bool,
+}
+
+impl Method {
+    /// Which kinds of map it can make use of; the others need not exist.
+    #[must_use]
+    pub const fn reads(self, lookup: super::Lookup) -> MethodReads {
+        match self {
+            Self::None => MethodReads {
+                height: false,
+                normal: false,
+                slope: false,
+            },
+            Self::Bump => MethodReads {
+                height: true,
+                normal: false,
+                slope: false,
+            },
+            Self::Slope => MethodReads {
+                height: true,
+                normal: false,
+                slope: true,
+            },
+            Self::Normal => MethodReads {
+                height: false,
+                normal: true,
+                slope: false,
+            },
+            Self::Parallax | Self::ParallaxLimited => MethodReads {
+                height: true,
+                normal: matches!(lookup, super::Lookup::Normal),
+                slope: false,
+            },
+        }
+    }
+}

@@ -1,7 +1,16 @@
-//! The ways of perturbing a surface.
+//! The ways of perturbing a surface: one list, one door.
+//!
+//! [`Method`] is the list that feeds every menu; [`MaterialMapping::choose`] decides once per material
+//! what it means there; [`MaterialMapping::apply`] runs it over a tile's points.
 
+mod apply;
+mod bound;
 mod method;
 mod settings;
 
-pub use method::{ErrorClass, Method, MethodInfo};
+pub use apply::{
+    MaterialMapping, MaterialMaps, bumped, normal_mapped, parallax, parallax_limited, slope_mapped,
+};
+pub use bound::{BoundHeight, BoundNormal};
+pub use method::{ErrorClass, Method, MethodInfo, MethodReads};
 pub use settings::{Derivative, Lookup, MappingSettings};

@@ -1,0 +1,51 @@
+//! Why a command could not run: one line each.
+
+use std::path::PathBuf;
+
+use crate::scene::LoadError;
+use crate::scene::file::OverrideError;
+
+/// Why a command could not run.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum CliError {
+    /// The input cannot be read.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// A `--set` cannot be done.
+    #[error(transparent)]
+    Override(#[from] OverrideError),
+    /// The output's ending says no known format.
+    #[error("{}: a picture is written as .png or .exr; which one, the name must say", .0.display())]
+    UnknownFormat(PathBuf),
+    /// There is no place for the output.
+    #[error("{}: {message}", path.display())]
+    NoPlace {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        message: String,
+    },
+    /// The picture cannot be written.
+    #[error(transparent)]
+    Picture(#[from] crate::scene::save_picture::SaveError),
+    /// Worker threads cannot be started.
+    #[error("cannot start worker threads: {0}")]
+    Threads(std::io::Error),
+    /// The pixel is not in the picture.
+    #[error("pixel {},{} is outside the picture of {} by {}", pixel[0], pixel[1], size[0], size[1])]
+    OutsidePicture {
+        /// Column and row.
+        pixel: [u32; 2],
+        /// Columns and rows of the picture.
+        size: [u32; 2],
+    },
+    /// No window; the line names what to do instead.
+    #[error("{0}")]
+    NoWindow(String),
+    /// Standard output is not taking more, for another reason than that nobody reads it.
+    #[error("cannot write to standard output: {0}")]
+    Stdout(std::io::Error),
+    /// Whoever read standard output has gone, as `head` does. That is nobody's fault.
+    #[error("nobody reads standard output")]
+    ReaderGone,
+}

@@ -1,0 +1,109 @@
+//! What `--help` teaches beyond the list of options.
+
+use std::fmt::Write as _;
+
+use crate::scene::built_in::SCENES;
+use crate::surface::mapping::Method;
+
+/// The first line.
+pub(super) const ABOUT: &str =
+    "Ray traces models and shows what bump, normal and parallax mapping really do to a picture";
+
+/// Behind `-h`.
+pub(super) const SHORT: &str = "\
+Examples:
+  reliefscope                          a window with a built-in scene
+  reliefscope model.obj                a window with a model
+  reliefscope render wall -o wall.png  a picture without a window
+
+`reliefscope --help` says more.";
+
+const EXAMPLES: &str = "\
+Examples:
+  reliefscope
+      opens a window with a built-in scene
+  reliefscope model.obj
+      opens a window with a model; a scene file (.toml) or a built-in name will do as well
+  reliefscope render wall -o wall.png --method parallax --samples 64
+      renders a built-in scene, with another method than its own
+  reliefscope render scene.toml -o out.exr --set light.0.intensity=3 --set material.brick.ks=[0.2,0.2,0.2]
+      renders a scene file with some of its keys changed; linear values
+  reliefscope inspect model.obj
+      says what was found in a model, and what was doubtful about it
+  reliefscope probe scene.toml --pixel 320,180
+      tells every step from one pixel's ray to its colour";
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  good
+  1  a measured threshold failed
+  2  could not run: bad arguments, unreadable input, no display
+
+Warnings about an input go to stderr as FILE:LINE: MESSAGE; answers go to stdout.
+Scene files, and all keys for --set, are explained in docs/scene.md.";
+
+/// Behind `render -h`.
+pub(super) const RENDER_EXAMPLES: &str = "\
+Examples:
+  reliefscope render wall -o wall.png
+  reliefscope render model.obj -o model.png --size 640x480 --samples 16
+  reliefscope render scene.toml -o scene.exr --set camera.vfov_deg=30";
+
+/// Behind `inspect -h`.
+pub(super) const INSPECT_EXAMPLES: &str = "\
+Examples:
+  reliefscope inspect model.obj
+  reliefscope inspect scene.toml --json | jq '.materials[].name'
+
+Lengths and areas are in the model's own units. `triangles` counts what the file says; those
+without area are also counted as `degenerate` and are not traced.";
+
+/// Behind `probe -h`.
+pub(super) const PROBE_EXAMPLES: &str = "\
+Examples:
+  reliefscope probe wall --pixel 640,360
+  reliefscope probe scene.toml --size 320x180 --pixel 10,20 --method parallax --json";
+
+/// Behind `--help`: examples, methods, scenes, exit codes.
+pub(super) fn overview() -> String {
+    format!("{EXAMPLES}\n\n{}\n{}\n{EXIT_CODES}", methods(), scenes())
+}
+
+/// Behind `render --help`.
+pub(super) fn render_details() -> String {
+    format!("{RENDER_EXAMPLES}\n\n{SET}\n\n{}", methods())
+}
+
+/// Behind `probe --help`.
+pub(super) fn probe_details() -> String {
+    format!("{PROBE_EXAMPLES}\n\n{SET}\n\n{}", methods())
+}
+
+const SET: &str = "\
+Keys for --set are paths through the scene file, whatever INPUT is:
+  camera.vfov_deg=30                 a key of a table
+  light.0.intensity=3                of the first light; a light's name will do as well
+  material.brick.ks=[0.2,0.2,0.2]    of a material by name; `*` means every material
+  material.brick.map.height.gain=2   of a material's map by role or number
+  shading.background=[0.1,0.1,0.2]
+A value is TOML; a word needs no quotes. docs/scene.md lists every key with units and ranges.";
+
+/// The one list of methods.
+pub(super) fn methods() -> String {
+    let mut text = String::from("Methods:\n");
+    for method in Method::ALL {
+        let info = method.info();
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "  {:<18}{}", info.name, info.summary);
+    }
+    text
+}
+
+/// The one list of built-in scenes.
+pub(super) fn scenes() -> String {
+    let mut text = String::from("Built-in scenes:\n");
+    for scene in SCENES {
+        let _ = writeln!(text, "  {:<18}{}", scene.name, scene.summary);
+    }
+    text
+}

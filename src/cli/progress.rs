@@ -1,0 +1,36 @@
+//! The progress bar of `render`, on a terminal only.
+
+use std::io::IsTerminal as _;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// A bar that counts samples per pixel; silent where standard error is no terminal.
+pub(super) struct Progress(ProgressBar);
+
+impl Progress {
+    /// A bar from 0 to `samples`.
+    pub fn new(samples: u32) -> Self {
+        if !std::io::stderr().is_terminal() {
+            return Self(ProgressBar::hidden());
+        }
+        let bar =
+            ProgressBar::with_draw_target(Some(u64::from(samples)), ProgressDrawTarget::stderr());
+        let style = "{wide_bar} {pos}/{len} samples, {elapsed} gone, {eta} to go";
+        // A bad template is a bug that shows at once; the plain style will do instead of a panic.
+        bar.set_style(
+            ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
+        );
+        bar.tick();
+        Self(bar)
+    }
+
+    /// Every pixel now has this many samples.
+    pub fn reached(&self, samples: u32) {
+        self.0.set_position(u64::from(samples));
+    }
+
+    /// Takes the bar away.
+    pub fn finish(self) {
+        self.0.finish_and_clear();
+    }
+}

@@ -1,0 +1,189 @@
+//! A snapshot made ready for tiles: everything in internal units, every choice made.
+
+use glam::Vec3;
+
+use super::Snapshot;
+use super::material::FrameMaterial;
+use crate::geometry::TriangleMesh;
+use crate::geometry::bvh::Bvh;
+use crate::math::LinearRgb;
+use crate::scene::{Background, ShadingModel};
+use crate::shading::{Falloff, LightKind};
+
+/// Camera rays of a pinhole in internal units (report 2.1–2.3 with rotation; pixel row 0 on top).
+#[derive(Debug, Clone, Copy)]
+pub struct FrameCamera {
+    /// Pinhole.
+    pub origin: Vec3,
+    /// Direction to the middle of the picture.
+    pub forward: Vec3,
+    /// Change of direction per pixel to the right.
+    pub per_column: Vec3,
+    /// Change of direction per pixel downwards.
+    pub per_row: Vec3,
+    /// Half the picture's size in pixels.
+    pub half: [f32; 2],
+}
+
+/// Where a light's rays come from, in internal units.
+#[derive(Debug, Clone, Copy)]
+pub enum FrameLightKind {
+    /// Unit direction to the light.
+    Directional(Vec3),
+    /// Place, and whether light fades with the square of the distance.
+    Point(Vec3, Falloff),
+}
+
+/// A light that sends something.
+#[derive(Debug, Clone, Copy)]
+pub struct FrameLight {
+    /// Index in the settings.
+    pub index: usize,
+    /// Kind and place.
+    pub kind: FrameLightKind,
+    /// Irradiance on a facing surface; for inverse-square lights at internal distance 1.
+    pub irradiance: LinearRgb,
+}
+
+/// Everything that tiles of one snapshot share.
+#[derive(Debug)]
+pub struct Frame<'a> {
+    /// Triangles.
+    pub mesh: &'a TriangleMesh,
+    /// Tree over them.
+    pub bvh: &'a Bvh,
+    /// Rays of the eye.
+    pub camera: FrameCamera,
+    /// Point and directional lights that are on.
+    pub lights: Vec<FrameLight>,
+    /// Sum of the ambient lights.
+    pub ambient: LinearRgb,
+    /// One per material index.
+    pub materials: Vec<FrameMaterial<'a>>,
+    /// Whether any material has holes.
+    pub has_cutouts: bool,
+    /// Reflection model.
+    pub model: ShadingModel,
+    /// Whether shadow rays are traced.
+    pub shadows: bool,
+    /// Mirror bounces at the most.
+    pub max_bounces: u32,
+    /// Behind everything.
+    pub background: Background,
+    /// Unit direction of the gradient's top.
+    pub up: Vec3,
+}
+
+impl<'a> Frame<'a> {
+    /// Resolves a snapshot.
+    #[must_use]
+    pub fn new(snapshot: &'a Snapshot) -> Self {
+        let (scene, settings) = (&*snapshot.scene, &*snapshot.settings);
+        let materials: Vec<_> = settings
+            .materials
+            .iter()
+            .map(|m| FrameMaterial::new(m, scene, &settings.mapping))
+            .collect();
+        Self {
+            mesh: &scene.mesh,
+            bvh: &scene.bvh,
+            camera: FrameCamera::new(snapshot),
+            lights: frame_lights(snapshot),
+            ambient: ambient(snapshot),
+            has_cutouts: materials.iter().any(|m| m.opacity.is_some()),
+            materials,
+            model: settings.shading.model,
+            shadows: settings.shading.shadows,
+            max_bounces: settings.shading.max_bounces,
+            background: settings.shading.background,
+            up: settings.camera.up.normalize_or(glam::DVec3::Z).as_vec3(),
+        }
+    }
+
+    /// What a ray sees that leaves the scene in the unit direction `dir`.
+    #[must_use]
+    pub fn background(&self, dir: Vec3) -> LinearRgb {
+        let Background { top, bottom } = self.background;
+        if top == bottom {
+            return top;
+        }
+        bottom + (top - bottom) * (0.5 + 0.5 * dir.dot(self.up)).clamp(0.0, 1.0)
+    }
+}
+
+impl FrameCamera {
+    fn new(snapshot: &Snapshot) -> Self {
+        let camera = &snapshot.settings.camera;
+        let axes = camera.axes();
+        let [width, height] = snapshot.size.map(f64::from);
+        // Square pixels: the vertical field of view sets the size of both sides.
+        let pixel = 2.0 * (camera.vfov * 0.5).tan() / height;
+        Self {
+            origin: snapshot.scene.normalization.internal_from_world(camera.eye),
+            forward: axes.forward.as_vec3(),
+            per_column: (axes.right * pixel).as_vec3(),
+            per_row: (-axes.up * pixel).as_vec3(),
+            half: [(width * 0.5) as f32, (height * 0.5) as f32],
+        }
+    }
+
+    /// Unit direction through the point `(x, y)` of the picture, in pixels from its top left corner.
+    #[must_use]
+    pub fn direction(&self, x: f32, y: f32) -> Vec3 {
+        let d =
+            self.forward + self.per_column * (x - self.half[0]) + self.per_row * (y - self.half[1]);
+        crate::math::normalize_or(d, self.forward)
+    }
+}
+
+fn frame_lights(snapshot: &Snapshot) -> Vec<FrameLight> {
+    let normalization = &snapshot.scene.normalization;
+    let mut lights = Vec::new();
+    for (index, light) in snapshot.settings.lights.iter().enumerate() {
+        let emitted = light.emitted();
+        if emitted == LinearRgb::BLACK || !emitted.is_finite() {
+            continue;
+        }
+        let (kind, irradiance) = match light.kind {
+            LightKind::Ambient => continue,
+            LightKind::Directional { direction } => {
+                let Some(wi) = (-direction).try_normalize() else {
+                    continue;
+                };
+                (
+                    FrameLightKind::Directional(wi.as_vec3().normalize_or_zero()),
+                    emitted,
+                )
+            }
+            LightKind::Point { position, falloff } => {
+                // d_world = d_internal / scale, so I / d_world² = I · scale² / d_internal².
+                let factor = match falloff {
+                    Falloff::None => 1.0,
+                    Falloff::InverseSquare => normalization.scale * normalization.scale,
+                };
+                let place = normalization.internal_from_world(position);
+                (
+                    FrameLightKind::Point(place, falloff),
+                    emitted.map(|c| (f64::from(c) * factor) as f32),
+                )
+            }
+        };
+        lights.push(FrameLight {
+            index,
+            kind,
+            irradiance,
+        });
+    }
+    lights
+}
+
+fn ambient(snapshot: &Snapshot) -> LinearRgb {
+    let ambient = snapshot
+        .settings
+        .lights
+        .iter()
+        .filter(|l| l.kind == LightKind::Ambient);
+    ambient
+        .map(crate::shading::Light::emitted)
+        .fold(LinearRgb::BLACK, |sum, e| sum + e)
+}

@@ -1,0 +1,204 @@
+//! A material made ready for tiles.
+
+use glam::Vec2;
+
+use crate::math::LinearRgb;
+use crate::scene::Scene;
+use crate::shading::Material;
+use crate::surface::SurfaceParts;
+use crate::surface::mapping::{
+    BoundHeight, BoundNormal, MappingSettings, MaterialMapping, MaterialMaps,
+};
+use crate::texture::{Addressing, ColorMap, HeightMap, MapRole, MapSlot};
+
+/// An albedo map tied to its material.
+#[derive(Debug, Clone, Copy)]
+pub struct BoundColor<'a> {
+    map: &'a ColorMap,
+    addressing: Addressing,
+    gain: f32,
+    bias: f32,
+}
+
+impl BoundColor<'_> {
+    /// Linear colour at `uv`.
+    #[must_use]
+    pub fn color(&self, uv: Vec2) -> LinearRgb {
+        let c = self
+            .map
+            .sample(self.addressing.st(uv), self.addressing.wrap);
+        if self.gain == 1.0 && self.bias == 0.0 {
+            c
+        } else {
+            c.map(|x| x * self.gain + self.bias)
+        }
+    }
+}
+
+/// A cut-out map tied to its material.
+#[derive(Debug, Clone, Copy)]
+pub struct BoundOpacity<'a> {
+    map: &'a HeightMap,
+    addressing: Addressing,
+    scale: f32,
+    offset: f32,
+}
+
+impl BoundOpacity<'_> {
+    /// Whether there is surface at `uv`: opacity of one half or more.
+    #[must_use]
+    pub fn is_solid(&self, uv: Vec2) -> bool {
+        self.map
+            .sample(self.addressing.st(uv), self.addressing.wrap)
+            * self.scale
+            + self.offset
+            >= 0.5
+    }
+}
+
+/// One material with its maps found and its choices made.
+#[derive(Debug, Clone, Copy)]
+pub struct FrameMaterial<'a> {
+    /// Diffuse colour, multiplies `albedo`.
+    pub kd: LinearRgb,
+    /// Specular colour.
+    pub ks: LinearRgb,
+    /// Whether a highlight is computed at all.
+    pub is_glossy: bool,
+    /// Phong exponent.
+    pub shininess: f32,
+    /// Mirror share.
+    pub reflectivity: f32,
+    /// Surface colour.
+    pub albedo: Option<BoundColor<'a>>,
+    /// Holes.
+    pub opacity: Option<BoundOpacity<'a>>,
+    /// What the maps do to the surface.
+    pub mapping: MaterialMapping<'a>,
+}
+
+impl<'a> FrameMaterial<'a> {
+    /// Resolves one material.
+    #[must_use]
+    pub fn new(material: &Material, scene: &'a Scene, mapping: &MappingSettings) -> Self {
+        let internal_amplitude = scene
+            .normalization
+            .internal_length(amplitude(material, mapping));
+        let midlevel = material.midlevel.unwrap_or(mapping.midlevel);
+        let slot = |role| {
+            material
+                .map(role)
+                .filter(|slot| slot.image < scene.images.len())
+        };
+        // Only what the method can use is bound, so that a typed map nobody reads is never made.
+        let reads = mapping.method.reads(mapping.lookup);
+        let maps = MaterialMaps {
+            height: slot(MapRole::Height)
+                .filter(|_| reads.height)
+                .map(|s| bind_height(s, scene, internal_amplitude, midlevel)),
+            normal: slot(MapRole::Normal)
+                .filter(|_| reads.normal)
+                .map(|s| bind_normal(s, scene, material, mapping)),
+            slope: slot(MapRole::Slope)
+                .filter(|_| reads.slope)
+                .map(|s| bind_normal(s, scene, material, mapping)),
+        };
+        Self {
+            kd: material.kd,
+            ks: material.ks,
+            is_glossy: material.ks.max_channel() > 0.0,
+            shininess: material.shininess.max(0.0),
+            reflectivity: material.reflectivity.clamp(0.0, 1.0),
+            albedo: slot(MapRole::Albedo).map(|s| BoundColor {
+                map: scene.images[s.image].color(),
+                addressing: Addressing::from_slot(s),
+                gain: s.gain,
+                bias: s.bias,
+            }),
+            opacity: slot(MapRole::Opacity).map(|s| bind_opacity(s, scene)),
+            mapping: MaterialMapping::choose(mapping, &maps),
+        }
+    }
+
+    /// What of a surface this material looks at, given that its triangle has texture coordinates or not.
+    #[must_use]
+    pub const fn parts(&self, has_uv: bool) -> SurfaceParts {
+        match (has_uv, self.mapping.is_active(), self.albedo.is_some()) {
+            (true, true, _) => SurfaceParts::Gradients,
+            (true, false, true) => SurfaceParts::Uv,
+            _ => SurfaceParts::Plain,
+        }
+    }
+}
+
+/// The amplitude in force, world units: the material's own, else the scene's, else the material's
+/// default.
+#[must_use]
+pub fn amplitude(material: &Material, mapping: &MappingSettings) -> f64 {
+    material
+        .amplitude
+        .or(mapping.amplitude)
+        .unwrap_or(material.default_amplitude)
+        .max(0.0)
+}
+
+fn bind_height<'a>(
+    slot: &MapSlot,
+    scene: &'a Scene,
+    amplitude: f32,
+    midlevel: f32,
+) -> BoundHeight<'a> {
+    // h = gain·s + bias, inverted 1 − h; displacement A·(h − midlevel).
+    let (gain, bias) = if slot.invert {
+        (-slot.gain, 1.0 - slot.bias)
+    } else {
+        (slot.gain, slot.bias)
+    };
+    BoundHeight {
+        map: scene.images[slot.image].height(slot.channel),
+        addressing: Addressing::from_slot(slot),
+        scale: amplitude * gain,
+        offset: amplitude * (bias - midlevel),
+    }
+}
+
+fn bind_normal<'a>(
+    slot: &MapSlot,
+    scene: &'a Scene,
+    material: &Material,
+    mapping: &MappingSettings,
+) -> BoundNormal<'a> {
+    let addressing = Addressing::from_slot(slot);
+    let amplitude = amplitude(material, mapping);
+    let strength = match slot.baked_amplitude {
+        Some(baked) if baked > 0.0 => (amplitude / baked) as f32,
+        // Nothing is known about the map's own amplitude: it is taken as it is, and vanishes with the relief.
+        _ => f32::from(u8::from(amplitude > 0.0)),
+    };
+    let green = if slot.flip_green { -1.0 } else { 1.0 };
+    // A picture laid upside down or mirrored on the chart turns its slopes round with it.
+    let signs = Vec2::new(
+        1.0_f32.copysign(addressing.scale.x),
+        -green * 1.0_f32.copysign(addressing.scale.y),
+    );
+    BoundNormal {
+        map: scene.images[slot.image].normal(),
+        addressing,
+        strength,
+        signs,
+    }
+}
+
+fn bind_opacity<'a>(slot: &MapSlot, scene: &'a Scene) -> BoundOpacity<'a> {
+    let (scale, offset) = if slot.invert {
+        (-slot.gain, 1.0 - slot.bias)
+    } else {
+        (slot.gain, slot.bias)
+    };
+    BoundOpacity {
+        map: scene.images[slot.image].height(slot.channel),
+        addressing: Addressing::from_slot(slot),
+        scale,
+        offset,
+    }
+}

@@ -1,0 +1,67 @@
+//! The first thing a user sees.
+
+use glam::DVec3;
+
+use super::super::maps::Relief;
+use super::super::meshes::{WorldMesh, at, bevelled_box, quad, sphere};
+use super::super::{Finish, Palette};
+use super::stage::{Stage, ambient, camera, lamp, sky, sun};
+use crate::math::LinearRgb;
+
+/// A brick wall with a pier and a stone course, a cobbled yard before it, a copper ball on a plinth. A
+/// warm, low sun rakes over the bricks from the left; a cool lamp hangs in the shadow of the pier.
+pub fn wall() -> Stage {
+    const BRICK: f64 = 1.5;
+    const COBBLE: f64 = 1.1;
+    const STONE: f64 = 0.9;
+    let mut palette = Palette::default();
+    let bricks = palette.relief(Relief::Bricks, BRICK, Finish::MATTE);
+    let cobble = palette.relief(Relief::Cobble, COBBLE, Finish::glossy(0.04, 18.0));
+    let stone = palette.relief(
+        Relief::OrangePeel,
+        STONE,
+        Finish::MATTE.tinted(LinearRgb::new(0.78, 0.72, 0.63)),
+    );
+    let copper = palette.relief(
+        Relief::Hammered,
+        0.5,
+        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 24.0).mirroring(0.14),
+    );
+
+    let mut mesh = WorldMesh::default();
+    mesh.append(quad(
+        DVec3::new(-6.0, 0.0, 0.0),
+        [DVec3::X * 12.0, DVec3::Z * 4.5],
+        BRICK,
+        bricks,
+    ));
+    mesh.append(quad(
+        DVec3::new(-6.0, -8.0, 0.0),
+        [DVec3::X * 12.0, DVec3::Y * 8.0],
+        COBBLE,
+        cobble,
+    ));
+    let pier = bevelled_box(DVec3::new(0.375, 0.25, 2.25), 0.012, BRICK, bricks);
+    mesh.append(pier.placed(at(DVec3::new(1.72, -0.2, 2.25))));
+    let course = bevelled_box(DVec3::new(3.65, 0.10, 0.17), 0.025, STONE, stone);
+    mesh.append(course.placed(at(DVec3::new(-2.32, -0.04, 0.17))));
+    let plinth = bevelled_box(DVec3::new(0.27, 0.27, 0.30), 0.03, STONE, stone);
+    mesh.append(plinth.placed(at(DVec3::new(0.55, -1.25, 0.30))));
+    let slab = bevelled_box(DVec3::new(0.33, 0.33, 0.045), 0.02, STONE, stone);
+    mesh.append(slab.placed(at(DVec3::new(0.55, -1.25, 0.645))));
+    let ball = sphere(0.31, 96, [4.0, 2.0], copper);
+    mesh.append(ball.placed(at(DVec3::new(0.55, -1.25, 1.0))));
+
+    Stage {
+        mesh,
+        palette,
+        camera: camera([-1.35, -3.95, 1.35], [0.50, -0.3, 1.02], 38.0),
+        lights: vec![
+            ambient([0.62, 0.78, 1.0], 0.22),
+            sun([0.86, 0.26, -0.40], [1.0, 0.84, 0.62], 9.0),
+            lamp("Lamp", [2.70, -0.55, 1.55], [0.45, 0.66, 1.0], 2.6),
+        ],
+        background: sky([0.25, 0.42, 0.75], [0.55, 0.45, 0.36]),
+        exposure_ev: 0.0,
+    }
+}

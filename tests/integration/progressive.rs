@@ -1,0 +1,261 @@
+//! Passes, previews and the hit cache: what may change when, and what never does.
+
+use glam::DVec3;
+use reliefscope::math::LinearRgb;
+use reliefscope::render::{PassEnd, Progressive, Snapshot, probe};
+use reliefscope::shading::{Light, LightKind};
+use reliefscope::surface::mapping::Method;
+use reliefscope::texture::MapRole;
+
+use crate::support::{QuadScene, bits, converged, edited, heights, picture, plain_rgb};
+
+fn waves() -> Snapshot {
+    let map = heights(32, 32, |s, t| {
+        0.5 + 0.25 * ((s * 12.566).sin() + (t * 6.283).cos())
+    });
+    QuadScene::new().with_map(MapRole::Height, map).snapshot()
+}
+
+fn mirrored(snapshot: &Snapshot) -> Snapshot {
+    edited(snapshot, |s| {
+        s.materials[0].reflectivity = 0.4;
+        s.materials[0].ks = LinearRgb::gray(0.3);
+    })
+}
+
+#[test]
+fn any_thread_count_gives_the_same_bits() {
+    let snapshot = mirrored(&waves());
+    let one = bits(&converged(&snapshot, 1).picture());
+    for threads in [2, 3, 8] {
+        assert_eq!(
+            one,
+            bits(&converged(&snapshot, threads).picture()),
+            "{threads} threads"
+        );
+    }
+}
+
+#[test]
+fn previews_leave_no_trace() {
+    let snapshot = mirrored(&waves());
+    let plain = bits(&picture(&snapshot));
+    for strides in [&[8, 4, 2, 1][..], &[4], &[2, 8], &[1]] {
+        let mut renderer = Progressive::new(2).expect("threads");
+        renderer.start(snapshot.clone());
+        for &stride in strides {
+            assert_eq!(renderer.preview(stride, &|| false), PassEnd::Complete);
+        }
+        while !renderer.is_converged() {
+            renderer.pass(&|| false);
+        }
+        assert_eq!(plain, bits(&renderer.picture()), "previews {strides:?}");
+        let rays = renderer.counters().camera_rays;
+        assert_eq!(
+            rays,
+            48 * 40 * 4,
+            "previews {strides:?} trace no pixel twice"
+        );
+    }
+}
+
+#[test]
+fn preview_pixels_are_those_of_the_first_pass() {
+    let snapshot = waves();
+    let mut renderer = Progressive::new(2).expect("threads");
+    renderer.start(snapshot);
+    renderer.preview(4, &|| false);
+    let preview = renderer.picture();
+    assert_eq!(renderer.samples(), 0, "a preview is no sample");
+    renderer.pass(&|| false);
+    let full = renderer.picture();
+    for y in 0..40 {
+        for x in 0..48 {
+            assert_eq!(
+                preview.at(x, y),
+                full.at(x - x % 4, y - y % 4),
+                "at {x}, {y}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_stopped_pass_goes_on_where_it_stopped() {
+    let snapshot = waves();
+    let plain = bits(&picture(&snapshot));
+    let mut renderer = Progressive::new(2).expect("threads");
+    renderer.start(snapshot);
+    let mut stops = 0;
+    while !renderer.is_converged() {
+        let polls = std::sync::atomic::AtomicU32::new(0);
+        let end = renderer.pass(&|| polls.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 1);
+        stops += u32::from(end == PassEnd::Stopped);
+    }
+    assert!(stops > 0, "the pass was stopped at least once");
+    assert_eq!(plain, bits(&renderer.picture()));
+}
+
+#[test]
+fn edits_that_cannot_change_visibility_trace_no_camera_ray_again() {
+    let snapshot = waves();
+    let edits: [(&str, Snapshot); 4] = [
+        ("light", edited(&snapshot, |s| s.lights[1].intensity = 0.7)),
+        (
+            "material",
+            edited(&snapshot, |s| s.materials[0].kd = LinearRgb::WHITE),
+        ),
+        (
+            "method",
+            edited(&snapshot, |s| s.mapping.method = Method::ParallaxLimited),
+        ),
+        (
+            "map",
+            edited(&snapshot, |s| s.materials[0].maps[0].enabled = false),
+        ),
+    ];
+    for (what, after) in edits {
+        let mut renderer = converged(&snapshot, 2);
+        renderer.start(after.clone());
+        assert!(renderer.reuses_hits(), "{what}");
+        renderer.pass(&|| false);
+        assert_eq!(
+            renderer.counters().camera_rays,
+            0,
+            "{what}: the first sample re-shades cached hits"
+        );
+        while !renderer.is_converged() {
+            renderer.pass(&|| false);
+        }
+        assert_eq!(bits(&picture(&after)), bits(&renderer.picture()), "{what}");
+    }
+}
+
+#[test]
+fn edits_that_change_visibility_forget_the_hits() {
+    let snapshot = waves();
+    let holes = plain_rgb(2, 2, [0, 0, 0]);
+    let moved = edited(&snapshot, |s| s.camera.eye.x += 0.1);
+    let larger = Snapshot {
+        size: [50, 40],
+        ..snapshot.clone()
+    };
+    let cut = QuadScene::new()
+        .with_map(MapRole::Opacity, holes)
+        .snapshot();
+    for after in [moved, larger, cut] {
+        let mut renderer = converged(&snapshot, 2);
+        renderer.start(after.clone());
+        assert!(!renderer.reuses_hits());
+        while !renderer.is_converged() {
+            renderer.pass(&|| false);
+        }
+        assert_eq!(bits(&picture(&after)), bits(&renderer.picture()));
+    }
+}
+
+#[test]
+fn the_screen_shows_the_mean_with_exposure() {
+    let renderer = converged(&waves(), 2);
+    let mut rgba = vec![[0_u8; 4]; 48 * 40];
+    renderer.encode_into(1.5, &mut rgba);
+    for (pixel, color) in rgba.iter().zip(&renderer.picture().pixels) {
+        let [r, g, b] = reliefscope::math::srgb8_from_linear(*color * 1.5_f32.exp2());
+        assert_eq!(*pixel, [r, g, b, 255]);
+    }
+}
+
+#[test]
+fn a_probe_tells_the_first_sample_to_the_bit() {
+    let snapshot = edited(&mirrored(&waves()), |s| s.samples = 1);
+    let film = picture(&snapshot);
+    for y in (0..40).step_by(3) {
+        for x in (0..48).step_by(5) {
+            let story = probe(&snapshot, [x, y]).expect("inside");
+            assert_eq!(story.color, film.at(x, y), "pixel {x}, {y}\n{story}");
+        }
+    }
+    assert!(probe(&snapshot, [48, 0]).is_none());
+}
+
+#[test]
+fn a_probe_adds_up() {
+    let snapshot = waves();
+    let mut lit = 0;
+    for x in 0..48 {
+        let story = probe(&snapshot, [x, 22]).expect("inside");
+        let bounce = &story.bounces[0];
+        let Some(hit) = &bounce.hit else { continue };
+        let sum = hit
+            .lights
+            .iter()
+            .fold(hit.ambient, |sum, l| sum + l.diffuse + l.specular);
+        for (a, b) in sum.to_array().into_iter().zip(bounce.color.to_array()) {
+            assert!((a - b).abs() <= 1e-6 * b.abs().max(1e-3), "{story}");
+        }
+        lit += 1;
+    }
+    assert!(lit > 30);
+}
+
+#[test]
+fn nothing_is_computed_for_what_the_scene_lacks() {
+    let bare = QuadScene::new().snapshot();
+    let counters = converged(&bare, 2).counters();
+    assert_eq!(counters.texture_fetches, 0, "no maps, no look-ups");
+    assert_eq!(counters.perturbations, 0);
+    assert_eq!(counters.power_calls, 0, "a matte scene takes no power");
+    assert_eq!(counters.mirror_rays, 0, "and sends no mirror ray");
+    assert_eq!(counters.cutout_tests, 0, "no holes, no questions");
+    assert_eq!(counters.camera_rays, 48 * 40 * 4);
+    assert_eq!(counters.non_finite, 0);
+
+    let behind = edited(&bare, |s| {
+        let up = LightKind::Directional {
+            direction: DVec3::Z,
+        };
+        s.lights = vec![Light::new("from below", up, 3.0)];
+    });
+    assert_eq!(
+        converged(&behind, 2).counters().shadow_rays,
+        0,
+        "a light behind the surface costs no shadow ray"
+    );
+
+    let dark = edited(&bare, |s| {
+        s.lights.iter_mut().for_each(|l| l.intensity = 0.0)
+    });
+    assert_eq!(
+        converged(&dark, 2).counters().shadow_rays,
+        0,
+        "nor does one without light"
+    );
+}
+
+#[test]
+fn counts_are_exact() {
+    // Every camera ray of this view hits the quad, which both lights see in full.
+    let close = edited(
+        &QuadScene::new()
+            .with_map(MapRole::Height, heights(8, 8, |s, _| s))
+            .snapshot(),
+        |s| {
+            s.camera.eye = DVec3::new(0.6, 0.6, 0.3);
+            s.camera.target = DVec3::new(0.6, 0.6, 0.0);
+            s.camera.up = DVec3::Y;
+            s.samples = 3;
+            s.materials[0].ks = LinearRgb::gray(0.2);
+            s.mapping.method = Method::Bump;
+        },
+    );
+    let counters = converged(&close, 2).counters();
+    let points = 48 * 40 * 3;
+    assert_eq!(counters.camera_rays, points);
+    assert_eq!(counters.perturbations, points);
+    assert_eq!(
+        counters.texture_fetches, points,
+        "bump costs one look-up a point"
+    );
+    assert_eq!(counters.shadow_rays, 2 * points, "one a light and point");
+    assert!(counters.power_calls > 0 && counters.power_calls <= 2 * points);
+}
