@@ -218,4 +218,3 @@ fn parallax_shifts_as_the_report_says() {
         }
     }
 }
-

@@ -190,4 +190,3 @@ fn highlights_are_powers_of_the_cosine() {
         );
     }
 }
-
