@@ -1,10 +1,16 @@
 //! One binary for all integration tests, so that they link once.
 
-#![expect(clippy::unwrap_used, reason = "a test that panics has failed")]
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that panics has failed; the configuration exempts only the test functions themselves"
+)]
 
+mod answers;
 mod bvh;
 mod cli;
+mod golden;
 mod layering;
+mod load_mtl;
 mod load_obj;
 mod mapping;
 mod metrics;
@@ -15,3 +21,5 @@ mod reference;
 mod scene_file;
 mod shapes;
 mod support;
+#[cfg(feature = "viewer")]
+mod viewer;

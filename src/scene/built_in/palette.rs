@@ -38,12 +38,12 @@ impl Finish {
         }
     }
 
-    /// Metal: most of the light in a tinted highlight.
+    /// Worked metal: a broad, tinted highlight over its own colour.
     #[must_use]
     pub const fn metal(tint: LinearRgb, shininess: f32) -> Self {
         Self {
-            kd: LinearRgb::gray(0.45),
-            ks: LinearRgb::new(0.5 * tint.r, 0.5 * tint.g, 0.5 * tint.b),
+            kd: LinearRgb::gray(0.75),
+            ks: LinearRgb::new(0.2 * tint.r, 0.2 * tint.g, 0.2 * tint.b),
             shininess,
             reflectivity: 0.0,
         }

@@ -24,6 +24,7 @@
 //! A tolerant front end that rewrites files for tobj would have to parse all of this first.
 
 mod amplitude;
+mod compare;
 mod library;
 mod lookup;
 mod map_statement;

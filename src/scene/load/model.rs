@@ -6,8 +6,9 @@ use std::sync::Arc;
 use super::mesh::{Assembly, assemble};
 use super::obj::{Kind, Notes, Obj};
 use super::staging::staged;
-use super::{LibraryRef, LoadOptions, fill_default_amplitudes, load_materials};
+use super::{LibraryRef, LoadOptions, MaterialSet, fill_default_amplitudes, load_materials};
 use crate::geometry::bvh::Bvh;
+use crate::geometry::{Normalization, TriangleMesh};
 use crate::scene::{
     DisplaySettings, LoadError, LoadWarning, LoadedScene, ModelFacts, Scene, SceneSource,
 };
@@ -49,19 +50,8 @@ pub fn load_model(path: &Path, options: &LoadOptions) -> Result<LoadedScene, Loa
         return Err(no_surface(path, &facts, &warnings));
     };
     let mut set = load_materials(&header.libraries, &header.materials, options)?;
+    settle_amplitudes(&mut set, path, (&mesh, &normalization));
     warnings.append(&mut set.warnings);
-    let notes = fill_default_amplitudes(&mut set.materials, &set.images, &mesh, &normalization);
-    warnings.extend(notes.into_iter().map(|message| LoadWarning {
-        file: path.to_owned(),
-        line: None,
-        message,
-    }));
-    for warning in &mut warnings {
-        // Without a library, nobody told the materials which model asks for them.
-        if warning.file.as_os_str().is_empty() {
-            path.clone_into(&mut warning.file);
-        }
-    }
     options.monitor.reached(MATERIALS)?;
     let settings = staged(&mesh, bounds, set.materials);
     let scene = Scene {
@@ -100,6 +90,27 @@ impl Header {
             materials: std::mem::take(&mut obj.materials),
             libraries: std::mem::take(&mut obj.libraries),
             notes: std::mem::replace(&mut obj.notes, empty),
+        }
+    }
+}
+
+/// Amplitudes that libraries leave open depend on the mesh. Every warning gets its file.
+fn settle_amplitudes(
+    set: &mut MaterialSet,
+    path: &Path,
+    (mesh, normalization): (&TriangleMesh, &Normalization),
+) {
+    let notes = fill_default_amplitudes(&mut set.materials, &set.images, mesh, normalization);
+    set.warnings
+        .extend(notes.into_iter().map(|message| LoadWarning {
+            file: path.to_owned(),
+            line: None,
+            message,
+        }));
+    for warning in &mut set.warnings {
+        // Without a library, nobody told the materials which model asks for them.
+        if warning.file.as_os_str().is_empty() {
+            path.clone_into(&mut warning.file);
         }
     }
 }

@@ -70,14 +70,16 @@ impl Cells {
         let mut edge = Dual::constant(9.0);
         for p in near {
             let (rx, ry) = (p[0] - own[0], p[1] - own[1]);
-            let length = (rx * rx + ry * ry).sqrt();
-            // The own point and those too far away to touch the border.
-            if !(1e-9..=3.0).contains(&length) {
+            let length2 = rx * rx + ry * ry;
+            // Distance to the bisector, times the length.
+            let inside = (own[0] - px) * rx + (own[1] - py) * ry + 0.5 * length2;
+            let reach = edge.value + rounding;
+            // The own point, and those beyond what the blend below would notice.
+            if length2 < 1e-18 || (reach > 0.0 && inside * inside > reach * reach * length2) {
                 continue;
             }
-            let (nx, ny) = (rx / length, ry / length);
-            let inside = (own[0] - x.value) * nx + (own[1] - y.value) * ny + 0.5 * length;
-            let bisector = Dual::chain2(x, y, [inside, -nx, -ny]);
+            let scale = 1.0 / length2.sqrt();
+            let bisector = Dual::chain2(x, y, [inside * scale, -rx * scale, -ry * scale]);
             edge = edge.smooth_min(bisector, rounding);
         }
         let id = own.map(|c| (floor(c) - REACH as i64).rem_euclid(self.n as i64));

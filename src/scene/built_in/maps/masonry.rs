@@ -20,15 +20,15 @@ impl Bricks {
     const SEED: u64 = 11;
     const LAYOUT: [i64; 2] = [6, 12];
     const PALETTE: [Paint; 7] = [
-        Paint::hex(0xa44f36),
-        Paint::hex(0xb45c3e),
-        Paint::hex(0x954531),
-        Paint::hex(0xba6b48),
-        Paint::hex(0x844034),
-        Paint::hex(0xa85a45),
-        Paint::hex(0xc27c57),
+        Paint::hex(0x97594a),
+        Paint::hex(0xa46653),
+        Paint::hex(0x874d42),
+        Paint::hex(0xaf765d),
+        Paint::hex(0x764840),
+        Paint::hex(0x9b6453),
+        Paint::hex(0xb98a6d),
     ];
-    const BURNT: Paint = Paint::hex(0x543a38);
+    const BURNT: Paint = Paint::hex(0x54444a);
     const MORTAR: Paint = Paint::hex(0xa39a8b);
     const SOOT: Paint = Paint::hex(0x4a4038);
 
@@ -76,7 +76,7 @@ impl Pattern for Bricks {
         }
         // Worn arrises are paler, as the fired skin is gone.
         let arris = body.value * (1.0 - edge.smoothstep(0.009, 0.018).value);
-        let brick = brick.scaled(shade).mix(Paint::hex(0xc88f6e), 0.22 * arris);
+        let brick = brick.scaled(shade).mix(Paint::hex(0xc79c80), 0.22 * arris);
         let mortar = Self::MORTAR
             .scaled(0.92 + 0.45 * sand.value + 0.25 * stain)
             .mix(Self::SOOT, 0.30 - 0.4 * stain);

@@ -16,8 +16,8 @@ pub struct Hammered {
 }
 
 impl Hammered {
-    const BRIGHT: Paint = Paint::hex(0xd99c77);
-    const DULL: Paint = Paint::hex(0xa96648);
+    const BRIGHT: Paint = Paint::hex(0xdc9a70);
+    const DULL: Paint = Paint::hex(0xa65f40);
 
     /// Prepares dents and noise.
     #[must_use]
@@ -32,7 +32,7 @@ impl Hammered {
 
 impl Pattern for Hammered {
     fn texel(&self, u: Dual, v: Dual) -> Texel {
-        let d2 = self.dents.dents(u, v, 0.10);
+        let d2 = self.dents.dents(u, v, 0.24);
         let bowl = (d2 * 1.25).smooth_min(Dual::constant(0.92), 0.12);
         let height = bowl + self.polish.at(u, v) * 0.012 + 0.05;
         let patina = self.patina.value(u.value, v.value);

@@ -102,15 +102,15 @@ impl Relief {
     #[must_use]
     pub const fn amplitude(self) -> f64 {
         match self {
-            Self::Bricks => 0.016,
+            Self::Bricks => 0.020,
             Self::Cobble => 0.040,
             Self::Tiles => 0.012,
             Self::Waves => 0.040,
             Self::Ripple => 0.030,
-            Self::Hammered => 0.018,
+            Self::Hammered => 0.022,
             Self::Weave => 0.022,
-            Self::Terrain => 0.060,
-            Self::OrangePeel => 0.008,
+            Self::Terrain => 0.080,
+            Self::OrangePeel => 0.010,
             Self::Rivets => 0.025,
             Self::Tread => 0.020,
             Self::Medallion => 0.040,

@@ -153,7 +153,7 @@ impl Terrain {
     pub fn new() -> Self {
         Self {
             ridges: (0..6)
-                .map(|o| super::noise::GradientNoise::new([4 << o; 2], 50 + o))
+                .map(|o| super::noise::GradientNoise::new([3 << o; 2], 50 + o))
                 .collect(),
             patches: Fbm::new([16, 16], 3, 1001),
         }
@@ -184,7 +184,7 @@ impl Pattern for Terrain {
             rock,
             steep * 0.30 - 0.45 + 2.2 * (height.value - 0.45) + patches,
         );
-        let snow = (height.value - 0.66 + 0.35 * patches) * 9.0 - 0.14 * (steep - 3.0).max(0.0);
+        let snow = (height.value - 0.70 + 0.25 * patches) * 10.0 - 0.10 * (steep - 6.0).max(0.0);
         Texel {
             height,
             paint: land.mix(Self::SNOW, snow),

@@ -30,13 +30,14 @@ pub fn materials() -> Stage {
     Stage {
         mesh,
         palette,
-        camera: camera([-1.1, -5.9, 0.35], [0.0, 0.0, 0.0], 37.0),
+        camera: camera([-0.9, -5.6, 0.25], [0.02, 0.0, -0.02], 36.5),
         lights: vec![
             ambient([0.80, 0.88, 1.0], 0.26),
             sun([0.66, 0.62, -0.46], [1.0, 0.90, 0.76], 4.2),
             lamp("Lamp", [2.6, -1.6, -0.6], [0.60, 0.75, 1.0], 3.0),
         ],
         background: sky([0.20, 0.24, 0.30], [0.09, 0.08, 0.08]),
+        exposure_ev: 0.0,
     }
 }
 
@@ -58,7 +59,7 @@ fn finish(relief: Relief) -> Finish {
         Relief::Waves | Relief::Ripple => Finish::glossy(0.12, 120.0).mirroring(0.10),
         Relief::OrangePeel => Finish::glossy(0.08, 60.0).tinted(LinearRgb::new(0.62, 0.08, 0.06)),
         Relief::Rivets => Finish::glossy(0.10, 35.0),
-        Relief::Hammered => Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 60.0).mirroring(0.2),
+        Relief::Hammered => Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 24.0).mirroring(0.08),
         Relief::Tread => Finish::metal(LinearRgb::gray(0.95), 40.0).mirroring(0.12),
         Relief::Medallion => Finish::metal(LinearRgb::new(1.0, 0.80, 0.50), 40.0).mirroring(0.10),
     }

@@ -35,7 +35,7 @@ pub fn columns() -> Stage {
     let cane = palette.relief(Relief::Weave, 0.55, Finish::glossy(0.05, 15.0));
     let bronze = palette.relief(
         Relief::Medallion,
-        1.5,
+        1.2,
         Finish::metal(LinearRgb::new(1.0, 0.80, 0.50), 40.0).mirroring(0.10),
     );
 
@@ -52,10 +52,10 @@ pub fn columns() -> Stage {
     let beam = bevelled_box(DVec3::new(3.2, 0.42, 0.30), 0.03, STONE_TILE, stone);
     mesh.append(beam.placed(at(DVec3::new(0.0, 1.0, 3.42))));
     let upright = DQuat::from_rotation_x(FRAC_PI_2);
-    let medal = disc(0.75, 96, bronze);
+    let medal = disc(0.60, 96, bronze);
     mesh.append(medal.placed(DAffine3::from_rotation_translation(
         upright,
-        DVec3::new(1.05, 2.17, 1.75),
+        DVec3::new(0.56, 2.19, 1.42),
     )));
     let crate_box = bevelled_box(DVec3::splat(0.45), 0.02, 0.9, steel);
     mesh.append(crate_box.placed(DAffine3::from_rotation_translation(
@@ -71,10 +71,11 @@ pub fn columns() -> Stage {
         camera: camera([-1.9, -5.6, 1.95], [0.12, 0.4, 1.28], 36.0),
         lights: vec![
             ambient([0.70, 0.82, 1.0], 0.24),
-            sun([0.66, 0.50, -0.52], [1.0, 0.84, 0.62], 5.2),
+            sun([0.66, 0.50, -0.40], [1.0, 0.84, 0.62], 5.0),
             lamp("Lamp", [2.9, -0.6, 2.4], [0.55, 0.70, 1.0], 4.5),
         ],
         background: sky([0.22, 0.40, 0.75], [0.70, 0.62, 0.52]),
+        exposure_ev: 0.0,
     }
 }
 

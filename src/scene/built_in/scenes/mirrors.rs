@@ -10,10 +10,14 @@ use super::super::{Finish, Palette};
 use super::stage::{Stage, ambient, camera, floor, lamp, sky, sun};
 use crate::math::LinearRgb;
 
-/// A smooth, a hammered and a wavy mirror ball on cobbles, between a leaning mirror and a brick block.
+/// A hammered, a smooth and a wavy mirror ball before a leaning mirror, with coloured things to reflect.
 pub fn mirrors() -> Stage {
     let mut palette = Palette::default();
-    let cobble = palette.relief(Relief::Cobble, 1.4, Finish::glossy(0.05, 25.0));
+    let tiles = palette.relief(
+        Relief::Tiles,
+        2.6,
+        Finish::glossy(0.06, 60.0).mirroring(0.10),
+    );
     let bricks = palette.relief(Relief::Bricks, 1.5, Finish::MATTE);
     let silver = Finish {
         kd: LinearRgb::gray(0.05),
@@ -24,42 +28,52 @@ pub fn mirrors() -> Stage {
     let smooth = palette.plain("mirror", silver);
     let hammered = palette.relief(Relief::Hammered, 0.9, silver);
     let wavy = palette.relief(Relief::Waves, 0.9, silver);
+    let lacquer = palette.relief(
+        Relief::OrangePeel,
+        0.5,
+        Finish::glossy(0.08, 60.0)
+            .mirroring(0.06)
+            .tinted(LinearRgb::new(0.70, 0.10, 0.06)),
+    );
+    let cane = palette.relief(Relief::Weave, 0.45, Finish::glossy(0.05, 15.0));
     let frame = palette.plain(
         "frame",
         Finish::glossy(0.08, 50.0).tinted(LinearRgb::new(0.10, 0.08, 0.07)),
     );
 
-    let mut mesh = floor(16.0, 1.4, cobble);
-    let ball = |tiles, material, place| {
-        meshes::sphere(0.7, 128, tiles, material).placed(DAffine3::from_rotation_translation(
-            DQuat::from_rotation_y(FRAC_PI_2),
-            place,
-        ))
+    let mut mesh = floor(18.0, 2.6, tiles);
+    let mut ball = |radius, tiles, material, [x, y]: [f64; 2]| {
+        let ball = meshes::sphere(radius, 128, tiles, material);
+        let turn = DQuat::from_rotation_y(FRAC_PI_2);
+        let place = DVec3::new(x, y, radius);
+        mesh.append(ball.placed(DAffine3::from_rotation_translation(turn, place)));
     };
-    mesh.append(ball([5.0, 2.0], hammered, DVec3::new(-1.65, 0.0, 0.7)));
-    mesh.append(ball([5.0, 2.0], smooth, DVec3::new(0.0, -0.35, 0.7)));
-    mesh.append(ball([5.0, 2.0], wavy, DVec3::new(1.65, 0.0, 0.7)));
-    mesh.append(
-        standing_mirror(smooth, frame).placed(DAffine3::from_rotation_translation(
-            DQuat::from_rotation_z(-0.10) * DQuat::from_rotation_x(-0.06),
-            DVec3::new(0.35, 1.9, 1.2),
-        )),
-    );
+    ball(0.72, [5.0, 2.0], hammered, [-1.75, 0.15]);
+    ball(0.72, [5.0, 2.0], smooth, [0.0, -0.2]);
+    ball(0.72, [5.0, 2.0], wavy, [1.75, 0.15]);
+    ball(0.30, [4.0, 2.0], lacquer, [-0.82, -1.35]);
+    ball(0.26, [4.0, 2.0], cane, [0.95, -1.45]);
+    let mirror = standing_mirror(smooth, frame);
+    mesh.append(mirror.placed(DAffine3::from_rotation_translation(
+        DQuat::from_rotation_z(-0.06) * DQuat::from_rotation_x(0.10),
+        DVec3::new(0.2, 2.2, 1.27),
+    )));
     let block = bevelled_box(DVec3::new(0.375, 0.75, 0.75), 0.015, 1.5, bricks);
-    mesh.append(block.placed(at(DVec3::new(-3.1, 1.0, 0.75))));
+    mesh.append(block.placed(at(DVec3::new(-3.2, 0.9, 0.75))));
     let block = bevelled_box(DVec3::new(0.375, 0.375, 0.375), 0.015, 1.5, bricks);
-    mesh.append(block.placed(at(DVec3::new(0.85, -1.6, 0.375))));
+    mesh.append(block.placed(at(DVec3::new(3.0, -0.55, 0.375))));
 
     Stage {
         mesh,
         palette,
-        camera: camera([-0.7, -6.0, 1.9], [0.0, 0.2, 0.85], 35.0),
+        camera: camera([-0.5, -6.2, 2.3], [0.05, 0.2, 0.80], 34.0),
         lights: vec![
             ambient([0.75, 0.82, 1.0], 0.26),
             sun([0.62, 0.46, -0.55], [1.0, 0.82, 0.60], 5.2),
             lamp("Lamp", [2.8, -2.6, 1.8], [0.55, 0.72, 1.0], 5.0),
         ],
-        background: sky([0.10, 0.26, 0.62], [1.0, 0.72, 0.48]),
+        background: sky([0.06, 0.20, 0.58], [1.30, 0.86, 0.52]),
+        exposure_ev: 0.0,
     }
 }
 

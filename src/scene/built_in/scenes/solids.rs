@@ -23,9 +23,9 @@ pub fn torus() -> Stage {
     let copper = palette.relief(
         Relief::Hammered,
         0.6,
-        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 60.0).mirroring(0.40),
+        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 24.0).mirroring(0.14),
     );
-    let mut mesh = floor(14.0, 1.8, tiles);
+    let mut mesh = floor(14.0, 2.6, tiles);
     let ring = meshes::torus([1.0, 0.42], [160, 80], [7.0, 3.0], cobble);
     mesh.append(ring.placed(at(DVec3::Z * 0.42)));
     mesh.append(lying_ball(0.42, [5.0, 2.0], copper, DVec3::Z * 0.42));
@@ -38,7 +38,8 @@ pub fn torus() -> Stage {
             sun([0.72, 0.28, -0.50], [1.0, 0.84, 0.64], 5.5),
             lamp("Lamp", [2.0, -1.6, 1.6], [0.50, 0.68, 1.0], 4.0),
         ],
-        background: sky([0.28, 0.45, 0.80], [0.72, 0.70, 0.66]),
+        background: sky([0.20, 0.38, 0.80], [0.95, 0.80, 0.62]),
+        exposure_ev: 0.0,
     }
 }
 
@@ -53,7 +54,7 @@ pub fn sphere() -> Stage {
     let copper = palette.relief(
         Relief::Hammered,
         1.05,
-        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 70.0).mirroring(0.35),
+        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 26.0).mirroring(0.14),
     );
     let cane = palette.relief(Relief::Weave, 0.62, Finish::glossy(0.05, 15.0));
     let glaze = palette.relief(
@@ -89,7 +90,8 @@ pub fn sphere() -> Stage {
             sun([0.70, 0.42, -0.58], [1.0, 0.86, 0.68], 5.0),
             lamp("Lamp", [2.6, -2.4, 2.2], [0.55, 0.72, 1.0], 6.0),
         ],
-        background: sky([0.22, 0.40, 0.78], [0.80, 0.72, 0.62]),
+        background: sky([0.12, 0.30, 0.72], [1.05, 0.86, 0.64]),
+        exposure_ev: 0.0,
     }
 }
 

@@ -27,6 +27,8 @@ pub struct Stage {
     pub lights: Vec<Light>,
     /// Behind everything.
     pub background: Background,
+    /// Stops, see [`DisplaySettings`].
+    pub exposure_ev: f32,
 }
 
 impl Stage {
@@ -47,7 +49,9 @@ impl Stage {
                 mapping: MappingSettings::default(),
                 samples: 64,
             },
-            display: DisplaySettings::default(),
+            display: DisplaySettings {
+                exposure_ev: self.exposure_ev,
+            },
             size: None,
             warnings: Vec::new(),
         }

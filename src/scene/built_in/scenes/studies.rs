@@ -21,6 +21,7 @@ pub fn plane() -> Stage {
             lamp("Lamp", [-1.4, -3.2, 0.9], [0.55, 0.72, 1.0], 1.5),
         ],
         background: sky([0.20, 0.38, 0.75], [0.80, 0.74, 0.66]),
+        exposure_ev: 0.0,
     }
 }
 
@@ -44,5 +45,6 @@ pub fn torus_study() -> Stage {
             lamp("Point", [1.5, -2.5, 2.5], [1.0; 3], 8.0),
         ],
         background: Background::plain(LinearRgb::BLACK),
+        exposure_ev: 1.0,
     }
 }

@@ -25,7 +25,7 @@ pub fn wall() -> Stage {
     let copper = palette.relief(
         Relief::Hammered,
         0.5,
-        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 60.0).mirroring(0.35),
+        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 24.0).mirroring(0.14),
     );
 
     let mut mesh = WorldMesh::default();
@@ -55,12 +55,13 @@ pub fn wall() -> Stage {
     Stage {
         mesh,
         palette,
-        camera: camera([-1.55, -4.35, 1.5], [0.25, -0.3, 1.08], 38.0),
+        camera: camera([-1.35, -3.95, 1.35], [0.50, -0.3, 1.02], 38.0),
         lights: vec![
             ambient([0.62, 0.78, 1.0], 0.22),
-            sun([0.84, 0.30, -0.40], [1.0, 0.80, 0.56], 7.5),
-            lamp("Lamp", [2.75, -0.75, 1.9], [0.50, 0.70, 1.0], 3.2),
+            sun([0.86, 0.26, -0.40], [1.0, 0.84, 0.62], 9.0),
+            lamp("Lamp", [2.70, -0.55, 1.55], [0.45, 0.66, 1.0], 2.6),
         ],
         background: sky([0.25, 0.42, 0.75], [0.55, 0.45, 0.36]),
+        exposure_ev: 0.0,
     }
 }
