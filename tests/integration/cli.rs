@@ -83,7 +83,14 @@ fn help_teaches() {
     for scene in SCENES {
         assert!(text.contains(scene.name));
     }
-    for word in ["Examples:", "Exit codes:", "render", "inspect", "probe", "--set"] {
+    for word in [
+        "Examples:",
+        "Exit codes:",
+        "render",
+        "inspect",
+        "probe",
+        "--set",
+    ] {
         assert!(text.contains(word), "{word}");
     }
     for command in ["view", "render", "inspect", "probe", "methods", "scenes"] {
@@ -110,14 +117,32 @@ fn bad_arguments_are_refused() {
         (&["render", "scene.toml", "-o", "a.jpg"], ".png or .exr"),
         (&["render", "scene.toml", "-o", "a"], ".png or .exr"),
         (&["render", "scene.toml", "-o", "no/a.png"], "no folder no"),
-        (&["render", "scene.toml", "-o", "a.png", "--size", "0x4"], "--size"),
-        (&["render", "scene.toml", "-o", "a.png", "--samples", "0"], "--samples"),
-        (&["render", "scene.toml", "-o", "a.png", "--method", "bumb"], "'bump'"),
-        (&["render", "scene.toml", "-o", "a.png", "--set", "kd"], "KEY=VALUE"),
-        (&["render", "scene.toml", "-o", "a.png", "--exposure", "99"], "--exposure"),
+        (
+            &["render", "scene.toml", "-o", "a.png", "--size", "0x4"],
+            "--size",
+        ),
+        (
+            &["render", "scene.toml", "-o", "a.png", "--samples", "0"],
+            "--samples",
+        ),
+        (
+            &["render", "scene.toml", "-o", "a.png", "--method", "bumb"],
+            "'bump'",
+        ),
+        (
+            &["render", "scene.toml", "-o", "a.png", "--set", "kd"],
+            "KEY=VALUE",
+        ),
+        (
+            &["render", "scene.toml", "-o", "a.png", "--exposure", "99"],
+            "--exposure",
+        ),
         (&["probe", "scene.toml"], "--pixel"),
         (&["probe", "scene.toml", "--pixel", "3"], "--pixel"),
-        (&["probe", "scene.toml", "--pixel", "24,0"], "outside the picture of 24 by 16"),
+        (
+            &["probe", "scene.toml", "--pixel", "24,0"],
+            "outside the picture of 24 by 16",
+        ),
         (&["--colour"], "--colour"),
     ];
     for (arguments, word) in cases {
@@ -158,7 +183,14 @@ fn broken_inputs_are_refused_in_one_line() {
     }
     let errors = refused(
         &folder,
-        &["render", "scene.toml", "-o", "out.png", "--set", "light.0.intensity=-1"],
+        &[
+            "render",
+            "scene.toml",
+            "-o",
+            "out.png",
+            "--set",
+            "light.0.intensity=-1",
+        ],
     );
     assert!(errors.contains("`light.0.intensity`"), "{errors}");
     assert!(!folder.path("out.png").exists());
@@ -173,8 +205,14 @@ fn render_writes_both_formats() {
         assert!(line.contains(word), "{word}: {line}");
     }
     let png = picture(&folder, "out.png");
-    assert_eq!((png.width, png.height, png.channels, png.bits()), (24, 16, 3, 8));
-    good(&folder, &["render", "scene.toml", "-o", "out.exr", "--exposure", "3"]);
+    assert_eq!(
+        (png.width, png.height, png.channels, png.bits()),
+        (24, 16, 3, 8)
+    );
+    good(
+        &folder,
+        &["render", "scene.toml", "-o", "out.exr", "--exposure", "3"],
+    );
     let exr = picture(&folder, "out.exr");
     assert_eq!((exr.width, exr.height, exr.bits()), (24, 16, 32));
     let Samples::F32(linear) = &exr.samples else {
@@ -241,7 +279,10 @@ fn inspect_tells_what_is_there() {
     assert_eq!(library["line"], 1);
     assert!(library["file"].to_string().contains("odd.obj"));
     let errors = stderr(&output);
-    assert!(errors.lines().any(|l| l.starts_with("odd.obj:1: ")), "{errors}");
+    assert!(
+        errors.lines().any(|l| l.starts_with("odd.obj:1: ")),
+        "{errors}"
+    );
 
     let text = good(&folder, &["inspect", "scene.toml", "--json"]);
     let json: Value = serde_json::from_str(&text).expect("JSON");
@@ -254,7 +295,12 @@ fn inspect_tells_what_is_there() {
     assert_eq!(json["images"].as_array().map(Vec::len), Some(2));
 
     let text = good(&folder, &["inspect", "scene.toml"]);
-    for word in ["triangles   2", "material \"ground\"", "height16.png", "area        4"] {
+    for word in [
+        "triangles   2",
+        "material \"ground\"",
+        "height16.png",
+        "area        4",
+    ] {
         assert!(text.contains(word), "{word}: {text}");
     }
 }
@@ -264,18 +310,31 @@ fn probe_tells_the_story_of_a_pixel() {
     let folder = with_scene();
     let text = good(&folder, &["probe", "scene.toml", "--pixel", "12,8"]);
     assert!(text.contains("ground") || text.contains("rim"), "{text}");
-    let text = good(&folder, &["probe", "scene.toml", "--pixel", "12,8", "--json"]);
+    let text = good(
+        &folder,
+        &["probe", "scene.toml", "--pixel", "12,8", "--json"],
+    );
     let json: Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(json["pixel"], serde_json::json!([12, 8]));
     assert_eq!(json["method"], "bump");
-    assert!(json["bounces"][0]["hit"]["t"].as_f64().is_some_and(|t| t > 0.0));
+    assert!(
+        json["bounces"][0]["hit"]["t"]
+            .as_f64()
+            .is_some_and(|t| t > 0.0)
+    );
     // Its colour is what the renderer writes with one sample.
-    good(&folder, &["render", "scene.toml", "-o", "one.exr", "--samples", "1"]);
+    good(
+        &folder,
+        &["render", "scene.toml", "-o", "one.exr", "--samples", "1"],
+    );
     let exr = picture(&folder, "one.exr");
     for c in 0..3_u8 {
         let told = json["color"][usize::from(c)].as_f64().expect("a number");
         let rendered = f64::from(exr.fraction(12, 8, c));
-        assert!((told - rendered).abs() <= 1e-6 * rendered.abs(), "{told} {rendered}");
+        assert!(
+            (told - rendered).abs() <= 1e-6 * rendered.abs(),
+            "{told} {rendered}"
+        );
     }
 }
 

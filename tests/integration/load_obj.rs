@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{DVec3, Vec3};
 use reliefscope::scene::load::{LoadOptions, load_model};
-use reliefscope::scene::{LoadError, LoadedScene};
+use reliefscope::scene::{LoadError, LoadWarning, LoadedScene};
 use serde_json::{Map, Value};
 
 fn data() -> PathBuf {
@@ -211,10 +211,28 @@ fn every_syntax_case_loads_as_expected() {
             _ => Faces::Planar,
         };
         wrong.extend(differences(name, &loaded, &case["ref"], faces));
-        // Damage inside libraries is the business of their own tests.
-        let about_model = !name.starts_with("mtl/") && name != "mtllib_missing.obj";
-        if about_model && expect == "ok-with-warning" && loaded.warnings.is_empty() {
+        if expect == "ok-with-warning" && loaded.warnings.is_empty() {
             wrong.push(format!("{name}: no warning"));
+        }
+        let damage = |w: &&LoadWarning| {
+            let words = ["dropped", "without its", "finite", "not found", "no usable"];
+            words.iter().any(|word| w.message.contains(word))
+        };
+        if expect == "ok" {
+            wrong.extend(
+                loaded
+                    .warnings
+                    .iter()
+                    .filter(damage)
+                    .map(ToString::to_string),
+            );
+        }
+        if loaded
+            .warnings
+            .iter()
+            .any(|w| w.file.as_os_str().is_empty())
+        {
+            wrong.push(format!("{name}: a warning without its file"));
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");

@@ -10,6 +10,7 @@ mod bvh;
 mod cli;
 mod golden;
 mod layering;
+mod load_mtl;
 mod load_obj;
 mod mapping;
 mod metrics;

@@ -128,7 +128,11 @@ impl Random {
         }
     }
     fn number(&mut self) -> f32 {
-        if self.flag() { self.size() } else { -self.size() }
+        if self.flag() {
+            self.size()
+        } else {
+            -self.size()
+        }
     }
     /// Doubles with all their digits.
     fn wide(&mut self) -> f64 {
@@ -147,7 +151,15 @@ impl Random {
         self.flag().then(|| make(self))
     }
     fn text(&mut self) -> String {
-        let odd = ["", "plain", "a \"quoted\" name", "back\\slash", "two\nlines", "späť ×", "# no = comment"];
+        let odd = [
+            "",
+            "plain",
+            "a \"quoted\" name",
+            "back\\slash",
+            "two\nlines",
+            "späť ×",
+            "# no = comment",
+        ];
         self.of(&odd).to_owned()
     }
 
@@ -212,12 +224,16 @@ impl Random {
             eye: self.point(),
             target: self.point() + DVec3::ONE,
             up: self.direction(),
-            vfov: f64::from(1 + self.below(1799)).mul_add(0.1, 0.0).to_radians(),
+            vfov: f64::from(1 + self.below(1799))
+                .mul_add(0.1, 0.0)
+                .to_radians(),
         };
         let count = self.below(4);
         settings.lights = (0..count).map(|_| self.light()).collect();
         if self.flag() {
-            settings.lights.push(Light::new(self.text(), LightKind::Ambient, self.size()));
+            settings
+                .lights
+                .push(Light::new(self.text(), LightKind::Ambient, self.size()));
         }
         settings.shading.model = self.of(&ShadingModel::ALL);
         settings.shading.shadows = self.flag();
@@ -334,7 +350,10 @@ ks = [1, 1, 1]
     assert_eq!(ground.kd, LinearRgb::WHITE);
     assert_eq!(rim.kd, LinearRgb::new(0.25, 0.5, 0.75));
     assert_eq!(ground.default_amplitude, 0.03, "as its library says");
-    assert!(ground.map(MapRole::Height).is_some(), "kept from the library");
+    assert!(
+        ground.map(MapRole::Height).is_some(),
+        "kept from the library"
+    );
     assert!(rim.map(MapRole::Albedo).is_none(), "taken away");
     for material in [ground, rim] {
         let normal = material.map(MapRole::Normal).expect("given to every one");
@@ -360,7 +379,10 @@ fn a_map_is_baked_for_the_amplitude_in_force() {
          [[material]]\nname = \"rim\"\nnormal_map = \"normal.png\"\n",
     );
     let rim = &loaded.settings.materials[1];
-    assert_eq!(rim.map(MapRole::Normal).and_then(|s| s.baked_amplitude), Some(0.06));
+    assert_eq!(
+        rim.map(MapRole::Normal).and_then(|s| s.baked_amplitude),
+        Some(0.06)
+    );
     assert_eq!(rim.amplitude, None);
 }
 
@@ -449,7 +471,8 @@ fn every_key_of_the_wrong_type_is_named_with_its_line() {
     assert!(keys.len() > 60, "{}", keys.len());
     for (number, key) in keys {
         for wrong in ["{ wrong = 1 }", "1979-05-27", "[[true]]"] {
-            let (line, message) = folder.fault(&with_line(&text, number, &format!("{key} = {wrong}")));
+            let (line, message) =
+                folder.fault(&with_line(&text, number, &format!("{key} = {wrong}")));
             assert_eq!(line, number, "{key}: {message}");
             assert!(message.contains(key), "{key}: {message}");
         }
@@ -468,7 +491,10 @@ fn unknown_keys_are_named_with_line_and_nearest_key() {
         let (found, message) = folder.fault(&bad);
         assert_eq!(found, number + 1, "{message}");
         assert!(message.contains(&misspelt), "{message}");
-        assert!(message.contains(&format!("`{key}`?")), "{misspelt}: {message}");
+        assert!(
+            message.contains(&format!("`{key}`?")),
+            "{misspelt}: {message}"
+        );
     }
     let (line, message) = folder.fault("model = \"plane.obj\"\n[camera]\nzoom = 2\n");
     assert_eq!(line, 3);
@@ -504,7 +530,11 @@ fn values_out_of_range_are_named_with_line_and_key() {
         ("[[light]]\nkind = \"ambient\"", "intensity", "-1"),
         ("[[light]]\nkind = \"ambient\"", "color", "[1, -1, 1]"),
         ("[[light]]\nkind = \"ambient\"", "position", "[1, 1, 1]"),
-        ("[[light]]\nkind = \"directional\"", "direction", "[0, 0, 0]"),
+        (
+            "[[light]]\nkind = \"directional\"",
+            "direction",
+            "[0, 0, 0]",
+        ),
         ("[[light]]\nkind = \"directional\"", "falloff", "\"none\""),
         ("[[light]]", "kind", "\"spot\""),
         ("[[material]]\nname = \"*\"", "reflectivity", "1.1"),
@@ -512,7 +542,11 @@ fn values_out_of_range_are_named_with_line_and_key() {
         ("[[material]]\nname = \"*\"", "amplitude", "-1"),
         ("[[material]]\nname = \"*\"", "normal_amplitude", "0"),
         ("[[material]]\nname = \"*\"", "normal_y", "\"left\""),
-        ("[[material]]\nname = \"*\"", "height_map", "\"nowhere.png\""),
+        (
+            "[[material]]\nname = \"*\"",
+            "height_map",
+            "\"nowhere.png\"",
+        ),
         ("[[material]]\nname = \"*\"", "height_map", "\"plane.obj\""),
     ];
     for (table, key, value) in cases {
@@ -534,8 +568,16 @@ fn what_is_missing_or_contradicts_is_named() {
         ("built_in = \"wal\"\n".to_owned(), 1, "wall"),
         ("\n\nmodel = \"nowhere.obj\"\n".to_owned(), 3, "nowhere.obj"),
         (format!("{model}[[light]]\nintensity = 1\n"), 2, "kind"),
-        (format!("{model}[[light]]\nkind = \"point\"\n"), 2, "position"),
-        (format!("{model}[[light]]\nkind = \"directional\"\n"), 2, "direction"),
+        (
+            format!("{model}[[light]]\nkind = \"point\"\n"),
+            2,
+            "position",
+        ),
+        (
+            format!("{model}[[light]]\nkind = \"directional\"\n"),
+            2,
+            "direction",
+        ),
         (
             format!("{model}[[light]]\nkind = \"ambient\"\n[[light]]\nkind = \"ambient\"\n"),
             4,
@@ -592,7 +634,10 @@ fn files_appear_whole_or_not_at_all() {
     let path = folder.write("saved.toml", "old");
     scene.settings.lights[0].intensity = f32::NAN;
     let error = write_scene(&path, &SceneView::from(&scene)).expect_err("NaN has no meaning");
-    assert!(matches!(&error, SaveError::NotFinite(key) if key == "light.0.intensity"), "{error}");
+    assert!(
+        matches!(&error, SaveError::NotFinite(key) if key == "light.0.intensity"),
+        "{error}"
+    );
     assert_eq!(fs::read_to_string(&path).expect("is there"), "old");
     scene.settings.lights[0].intensity = 1.0;
     let nowhere = folder.path("no/such/folder.toml");

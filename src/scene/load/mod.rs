@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! load_model: bytes → obj (statements, line by line) → mesh (polygon, normals, vertices)
-//!             → materials → amplitude → staging (camera, lights) → LoadedScene
+//!             → materials (library, mtl, picture) → amplitude → staging (camera, lights) → LoadedScene
 //! ```
 //!
 //! # Why the OBJ reader is our own
@@ -24,6 +24,7 @@
 //! A tolerant front end that rewrites files for tobj would have to parse all of this first.
 
 mod amplitude;
+mod compare;
 mod library;
 mod lookup;
 mod map_statement;

@@ -4,24 +4,20 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::mesh::{Assembly, assemble};
-use super::obj::{Kind, MaterialUse, Notes, Obj};
+use super::obj::{Kind, Notes, Obj};
 use super::staging::staged;
 use super::{LibraryRef, LoadOptions, MaterialSet, fill_default_amplitudes, load_materials};
 use crate::geometry::bvh::Bvh;
-use crate::math::LinearRgb;
+use crate::geometry::{Normalization, TriangleMesh};
 use crate::scene::{
     DisplaySettings, LoadError, LoadWarning, LoadedScene, ModelFacts, Scene, SceneSource,
 };
-use crate::shading::Material;
 
 /// Shares of the work done after reading, parsing, assembling, and reading materials.
 const READ: f32 = 0.05;
 const PARSED: f32 = 0.45;
 const ASSEMBLED: f32 = 0.65;
 const MATERIALS: f32 = 0.8;
-
-/// Diffuse grey of a model without materials.
-const GRAY: f32 = 0.8;
 
 /// Loads an OBJ model with its material libraries and maps.
 ///
@@ -53,16 +49,9 @@ pub fn load_model(path: &Path, options: &LoadOptions) -> Result<LoadedScene, Loa
     let Some(bounds) = facts.bounds else {
         return Err(no_surface(path, &facts, &warnings));
     };
-    let mut set = materials(&header.materials, &header.libraries, options)?;
+    let mut set = load_materials(&header.libraries, &header.materials, options)?;
+    settle_amplitudes(&mut set, path, (&mesh, &normalization));
     warnings.append(&mut set.warnings);
-    let amplitudes =
-        fill_default_amplitudes(&mut set.materials, &set.images, &mesh, &normalization);
-    let file = || path.to_owned();
-    warnings.extend(amplitudes.into_iter().map(|message| LoadWarning {
-        file: file(),
-        line: None,
-        message,
-    }));
     options.monitor.reached(MATERIALS)?;
     let settings = staged(&mesh, bounds, set.materials);
     let scene = Scene {
@@ -89,7 +78,7 @@ pub fn load_model(path: &Path, options: &LoadOptions) -> Result<LoadedScene, Loa
 
 /// What outlives the polygons of a file.
 struct Header {
-    materials: Vec<MaterialUse>,
+    materials: Vec<(Vec<u8>, usize)>,
     libraries: Vec<LibraryRef>,
     notes: Notes,
 }
@@ -101,6 +90,27 @@ impl Header {
             materials: std::mem::take(&mut obj.materials),
             libraries: std::mem::take(&mut obj.libraries),
             notes: std::mem::replace(&mut obj.notes, empty),
+        }
+    }
+}
+
+/// Amplitudes that libraries leave open depend on the mesh. Every warning gets its file.
+fn settle_amplitudes(
+    set: &mut MaterialSet,
+    path: &Path,
+    (mesh, normalization): (&TriangleMesh, &Normalization),
+) {
+    let notes = fill_default_amplitudes(&mut set.materials, &set.images, mesh, normalization);
+    set.warnings
+        .extend(notes.into_iter().map(|message| LoadWarning {
+            file: path.to_owned(),
+            line: None,
+            message,
+        }));
+    for warning in &mut set.warnings {
+        // Without a library, nobody told the materials which model asks for them.
+        if warning.file.as_os_str().is_empty() {
+            path.clone_into(&mut warning.file);
         }
     }
 }
@@ -137,31 +147,4 @@ fn no_surface(path: &Path, facts: &ModelFacts, warnings: &[LoadWarning]) -> Load
         line: None,
         message,
     }
-}
-
-/// One material per use, in order: from the libraries, or grey.
-fn materials(
-    uses: &[MaterialUse],
-    libraries: &[LibraryRef],
-    options: &LoadOptions,
-) -> Result<MaterialSet, LoadError> {
-    let named: Vec<_> = uses
-        .iter()
-        .filter(|u| !u.name.is_empty())
-        .map(|u| (u.name.clone(), u.line))
-        .collect();
-    let mut set = load_materials(libraries, &named, options)?;
-    let mut found = std::mem::take(&mut set.materials).into_iter();
-    set.materials = uses
-        .iter()
-        .map(|u| {
-            let (name, material) = if u.name.is_empty() {
-                ("default".into(), None)
-            } else {
-                (String::from_utf8_lossy(&u.name), found.next())
-            };
-            material.unwrap_or_else(|| Material::matte(name, LinearRgb::gray(GRAY)))
-        })
-        .collect();
-    Ok(set)
 }

@@ -1,6 +1,5 @@
 //! OBJ text, read line by line: one bad line costs one note, never the file.
 
-mod library;
 mod lines;
 mod notes;
 mod number;
@@ -65,15 +64,6 @@ pub(super) struct Span {
     pub smoothing: Smoothing,
 }
 
-/// What `usemtl` said of some faces.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct MaterialUse {
-    /// Bytes as written; empty where there was no name.
-    pub name: Vec<u8>,
-    /// Line that named it first.
-    pub line: usize,
-}
-
 /// An OBJ file. Every index in it is in range; a face has its texture coordinates (normals) at all
 /// corners or at none.
 #[derive(Debug)]
@@ -92,8 +82,9 @@ pub(super) struct Obj {
     pub faces: Vec<Face>,
     /// Material and smoothing of the faces.
     pub spans: Vec<Span>,
-    /// Materials in the order of their first face.
-    pub materials: Vec<MaterialUse>,
+    /// What follows `usemtl`, as written, and the line, in the order of their first face. Empty and 0 for
+    /// faces before any.
+    pub materials: Vec<(Vec<u8>, usize)>,
     /// `mtllib` in the order of the file.
     pub libraries: Vec<LibraryRef>,
     /// What was doubtful.

@@ -1,7 +1,8 @@
 //! From map statements to slots: which picture means what, in which order, and why.
 
+use super::compare::compare;
 use super::map_statement::{ImfChannel, MapKind, MapOptions, MapStatement};
-use super::recognise::{Look, compare, describe_heights, describe_picture, look_of};
+use super::recognise::{Look, describe_heights, describe_picture, look_of};
 use crate::texture::{Channel, MapImage, MapRole, MapSlot, RawImage, Wrap};
 
 /// A statement whose picture was found and decoded.
@@ -216,13 +217,10 @@ fn relief(map: &PlacedMap<'_>, image: &MapImage, set: &mut SlotSet) -> Candidate
             remark("is grey; read as heights, not as normals");
             (MapRole::Height, "grey, so heights")
         }
-        (MapKind::Norm, Look::Normals) => (MapRole::Normal, "normals, +Y up"),
+        (MapKind::Norm, Look::Normals) => (MapRole::Normal, "normals"),
         (MapKind::Norm, Look::Color) => {
             remark("does not look like a normal map; read as one all the same");
-            (
-                MapRole::Normal,
-                "normals, +Y up, though it does not look so",
-            )
+            (MapRole::Normal, "normals, though it does not look so")
         }
         (_, Look::Normals) => {
             remark("looks like a normal map; read as one, not as heights");

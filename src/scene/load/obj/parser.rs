@@ -5,11 +5,10 @@ use std::path::Path;
 
 use glam::{DVec3, Vec2, Vec3};
 
-use super::library::library_names;
 use super::lines::{Words, name, shown, split_keyword};
 use super::notes::{Kind, Notes};
 use super::number::{float, integer};
-use super::{Corner, Face, MaterialUse, NONE, Obj, Smoothing, Span};
+use super::{Corner, Face, NONE, Obj, Smoothing, Span};
 use crate::scene::LoadError;
 use crate::scene::load::LibraryRef;
 
@@ -28,8 +27,8 @@ struct BadWords<'a> {
 pub(super) struct Parser {
     /// What was read so far, its positive indices unchecked.
     pub obj: Obj,
-    /// Name and line of the last `usemtl`.
-    current: MaterialUse,
+    /// Name and line of the last `usemtl`; with a comment, as some names hold a `#`.
+    current: (Vec<u8>, usize),
     /// Its index, once a face uses it.
     material: Option<u16>,
     smoothing: Smoothing,
@@ -54,10 +53,7 @@ impl Parser {
                 libraries: Vec::new(),
                 notes: Notes::new(path),
             },
-            current: MaterialUse {
-                name: Vec::new(),
-                line: 0,
-            },
+            current: (Vec::new(), 0),
             material: None,
             smoothing: Smoothing::Unsaid,
             index_of: HashMap::new(),
@@ -74,13 +70,14 @@ impl Parser {
             b"f" | b"fo" => self.face(line, rest)?,
             b"s" => self.smoothing(line, rest),
             b"usemtl" => {
-                self.current = MaterialUse {
-                    name: name(rest).to_vec(),
-                    line,
-                };
+                self.current = (rest.to_vec(), line);
                 self.material = None;
             }
-            b"mtllib" => self.library(line, rest),
+            b"mtllib" => self.obj.libraries.push(LibraryRef {
+                name: rest.to_vec(),
+                model: self.obj.path.clone(),
+                line,
+            }),
             b"l" => self.obj.notes.count(Kind::Line, line),
             b"p" => self.obj.notes.count(Kind::Point, line),
             b"" | b"g" | b"o" => {}
@@ -172,22 +169,6 @@ impl Parser {
         };
     }
 
-    fn library(&mut self, line: usize, rest: &[u8]) {
-        let whole = name(rest);
-        if whole.is_empty() {
-            self.obj.notes.add(Kind::Unknown, line, || {
-                "mtllib without a name skipped".into()
-            });
-        }
-        for name in library_names(&self.obj.path, whole) {
-            self.obj.libraries.push(LibraryRef {
-                name: name.to_vec(),
-                model: self.obj.path.clone(),
-                line,
-            });
-        }
-    }
-
     fn face(&mut self, line: usize, rest: &[u8]) -> Result<(), LoadError> {
         let start = self.obj.corners.len();
         let mut bad = BadWords::default();
@@ -277,7 +258,7 @@ impl Parser {
 
     /// Index of the current material, new or known; `None` beyond the limit.
     fn material_index(&mut self) -> Option<u16> {
-        let index = match self.index_of.get(&self.current.name) {
+        let index = match self.index_of.get(&self.current.0) {
             Some(&index) => index,
             None => {
                 let count = self.obj.materials.len();
@@ -285,7 +266,7 @@ impl Parser {
                     .ok()
                     .filter(|_| count < MAX_MATERIALS)?;
                 self.obj.materials.push(self.current.clone());
-                self.index_of.insert(self.current.name.clone(), index);
+                self.index_of.insert(self.current.0.clone(), index);
                 index
             }
         };
