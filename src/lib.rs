@@ -8,3 +8,5 @@ pub mod scene;
 pub mod shading;
 pub mod surface;
 pub mod texture;
+#[cfg(feature = "viewer")]
+pub mod viewer;

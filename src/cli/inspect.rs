@@ -110,10 +110,11 @@ fn write_text(text: &mut String, loaded: &LoadedScene) -> std::fmt::Result {
     if facts.degenerate > 0 {
         writeln!(text, "  degenerate  {} (not traced)", facts.degenerate)?;
     }
-    writeln!(text, "  area        {}", facts.area)?;
-    if let Some([min, max]) = facts.bounds {
-        writeln!(text, "  from        {} {} {}", min.x, min.y, min.z)?;
-        writeln!(text, "  to          {} {} {}", max.x, max.y, max.z)?;
+    writeln!(text, "  area        {}", short(facts.area))?;
+    if let Some(corners) = facts.bounds {
+        let [min, max] = corners.map(|p| p.to_array().map(short).join(" "));
+        writeln!(text, "  from        {min}")?;
+        writeln!(text, "  to          {max}")?;
     }
     for material in &loaded.settings.materials {
         write_material(text, scene, material)?;
@@ -137,6 +138,16 @@ fn write_text(text: &mut String, loaded: &LoadedScene) -> std::fmt::Result {
     }
 }
 
+/// Seven digits are enough to read; JSON has them all.
+fn short(x: f64) -> String {
+    let rounded = format!("{x:.6e}").parse().unwrap_or(x);
+    if rounded == 0.0 || (1e-5..1e12).contains(&f64::abs(rounded)) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
 fn write_material(text: &mut String, scene: &Scene, material: &Material) -> std::fmt::Result {
     let rgb = |c: crate::math::LinearRgb| format!("{} {} {}", c.r, c.g, c.b);
     writeln!(
@@ -149,8 +160,10 @@ fn write_material(text: &mut String, scene: &Scene, material: &Material) -> std:
         material.reflectivity
     )?;
     match (material.amplitude, material.default_amplitude) {
-        (Some(own), _) => writeln!(text, "  amplitude {own} of its own")?,
-        (None, default) if default > 0.0 => writeln!(text, "  amplitude {default} by default")?,
+        (Some(own), _) => writeln!(text, "  amplitude {} of its own", short(own))?,
+        (None, default) if default > 0.0 => {
+            writeln!(text, "  amplitude {} by default", short(default))?
+        }
         (None, _) => {}
     }
     for slot in &material.maps {
@@ -162,7 +175,7 @@ fn write_material(text: &mut String, scene: &Scene, material: &Material) -> std:
             write!(text, ", {}x{}, {} bits", raw.width, raw.height, raw.bits())?;
         }
         if let Some(baked) = slot.baked_amplitude {
-            write!(text, ", baked for amplitude {baked}")?;
+            write!(text, ", baked for amplitude {}", short(baked))?;
         }
         let note = if slot.note.is_empty() { "" } else { "; " };
         writeln!(text, "{note}{}", slot.note)?;

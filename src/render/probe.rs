@@ -184,6 +184,7 @@ fn one_bounce(
         surfaces,
         shadows,
         radiance,
+        ..
     } = scratch;
     trace::closest_hits(frame, &queue.rays, t_max, hits, counters);
     surface::mapped_surfaces(frame, queue, hits, surfaces, counters);

@@ -10,6 +10,20 @@ use crate::math::LinearRgb;
 /// stay in the second-level cache.
 pub const TILE_SIZE: u32 = 32;
 
+/// Side of the blocks that a tile's pixels are listed in; divides [`TILE_SIZE`].
+const BLOCK_SIZE: u32 = 8;
+
+/// One pixel of a tile in a pass.
+#[derive(Debug, Clone, Copy)]
+pub struct TilePixel {
+    /// Column in the picture.
+    pub column: u32,
+    /// Row in the picture.
+    pub row: u32,
+    /// Index in the tile's arrays.
+    pub place: u32,
+}
+
 /// What the cache knows of a pixel's first camera ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CachedHit {
@@ -92,31 +106,46 @@ impl Tile {
         self.samples += 1;
     }
 
-    /// Columns and rows of the pixels that this pass renders, with their place in the tile's arrays.
-    fn pixels(&self, index: u32, stride: u32) -> impl Iterator<Item = (u32, u32, usize)> + use<> {
-        let (x0, y0, width, height) = (self.x0, self.y0, self.width, self.height);
+    /// Lists the pixels that a pass renders, in blocks of 8×8 so that 64 rays in a row are neighbours.
+    fn list_pixels(&self, index: u32, stride: u32, pixels: &mut Vec<TilePixel>) {
         let done = if index == 0 { self.first_stride } else { None };
-        let on = |c: u32, stride: u32| c.is_multiple_of(stride);
-        (0..height)
-            .filter(move |y| on(y0 + y, stride))
-            .flat_map(move |y| {
-                (0..width)
-                    .filter(move |x| on(x0 + x, stride))
-                    .filter_map(move |x| {
-                        let (column, row) = (x0 + x, y0 + y);
-                        let skip = done.is_some_and(|d| on(column, d) && on(row, d));
-                        (!skip).then_some((column, row, (y * width + x) as usize))
-                    })
-            })
+        let is_done = |column: u32, row: u32| {
+            done.is_some_and(|d| column.is_multiple_of(d) && row.is_multiple_of(d))
+        };
+        let block = BLOCK_SIZE * stride;
+        pixels.clear();
+        for y_block in (0..self.height).step_by(block as usize) {
+            for x_block in (0..self.width).step_by(block as usize) {
+                let (y_end, x_end) = (
+                    (y_block + block).min(self.height),
+                    (x_block + block).min(self.width),
+                );
+                for y in (y_block..y_end).step_by(stride as usize) {
+                    for x in (x_block..x_end).step_by(stride as usize) {
+                        let (column, row) = (self.x0 + x, self.y0 + y);
+                        if !is_done(column, row) {
+                            pixels.push(TilePixel {
+                                column,
+                                row,
+                                place: y * self.width + x,
+                            });
+                        }
+                    }
+                }
+            }
+        }
     }
 
     fn shade(&mut self, frame: &Frame<'_>, index: u32, stride: u32, scratch: &mut Scratch) {
         let mut counters = Counters::default();
-        let pixels: Vec<(u32, u32, usize)> = self.pixels(index, stride).collect();
+        let mut pixels = std::mem::take(&mut scratch.pixels);
+        self.list_pixels(index, stride, &mut pixels);
         scratch.queue.clear();
-        for (slot, &(x, y, _)) in pixels.iter().enumerate() {
-            let [sx, sy] = pixel_sample([x, y], index);
-            let dir = frame.camera.direction(x as f32 + sx, y as f32 + sy);
+        for (slot, pixel) in pixels.iter().enumerate() {
+            let [sx, sy] = pixel_sample([pixel.column, pixel.row], index);
+            let dir = frame
+                .camera
+                .direction(pixel.column as f32 + sx, pixel.row as f32 + sy);
             scratch.queue.push(
                 Ray {
                     origin: frame.camera.origin,
@@ -138,21 +167,22 @@ impl Tile {
             trace::closest_hits(frame, &queue.rays, t_max, hits, &mut counters);
         }
         walk(frame, scratch, &mut counters);
-        for (&(_, _, place), &sample) in pixels.iter().zip(&scratch.radiance) {
+        for (pixel, &sample) in pixels.iter().zip(&scratch.radiance) {
             if sample.is_finite() {
-                self.sums[place] += sample;
+                self.sums[pixel.place as usize] += sample;
             } else {
                 counters.non_finite += 1;
             }
         }
         self.counters += counters;
+        scratch.pixels = pixels;
     }
 
     /// Hits of the first samples: from the cache where it knows them, else traced and remembered.
     fn first_hits(
         &mut self,
         frame: &Frame<'_>,
-        pixels: &[(u32, u32, usize)],
+        pixels: &[TilePixel],
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) {
@@ -164,21 +194,26 @@ impl Tile {
             ..
         } = scratch;
         next.clear();
-        for (slot, &(_, _, place)) in pixels.iter().enumerate() {
-            if self.hits[place] == CachedHit::Unknown {
+        for (slot, pixel) in pixels.iter().enumerate() {
+            if self.hits[pixel.place as usize] == CachedHit::Unknown {
                 next.push(queue.rays[slot], slot as u32, 1.0);
             }
         }
         counters.camera_rays += next.rays.len() as u64;
         trace::closest_hits(frame, &next.rays, t_max, hits, counters);
         for (hit, &slot) in hits.iter().zip(&next.slots) {
-            self.hits[pixels[slot as usize].2] = hit.map_or(CachedHit::Miss, CachedHit::Hit);
+            self.hits[pixels[slot as usize].place as usize] =
+                hit.map_or(CachedHit::Miss, CachedHit::Hit);
         }
         hits.clear();
-        hits.extend(pixels.iter().map(|&(_, _, place)| match self.hits[place] {
-            CachedHit::Hit(hit) => Some(hit),
-            CachedHit::Miss | CachedHit::Unknown => None,
-        }));
+        hits.extend(
+            pixels
+                .iter()
+                .map(|pixel| match self.hits[pixel.place as usize] {
+                    CachedHit::Hit(hit) => Some(hit),
+                    CachedHit::Miss | CachedHit::Unknown => None,
+                }),
+        );
     }
 }
 
@@ -193,6 +228,7 @@ fn walk(frame: &Frame<'_>, scratch: &mut Scratch, counters: &mut Counters) {
             surfaces,
             shadows,
             radiance,
+            ..
         } = &mut *scratch;
         let mirrors = if bounce == frame.max_bounces {
             Mirrors::End

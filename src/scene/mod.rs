@@ -52,7 +52,7 @@ pub struct ModelFacts {
 }
 
 /// What is slow to build. It never changes; typed maps made on demand change no pixel.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Scene {
     /// Shown in the window's title.
     pub name: String,

@@ -7,7 +7,7 @@ use super::{Channel, ColorMap, HeightMap, NormalMap, RawImage};
 
 /// One picture of a scene. Typed maps are made when a material first asks for the role, then kept: a
 /// scene that never uses a picture as normals never pays for it. What is made never changes a pixel.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct MapImage {
     /// Short name for lists: the file name, or what generated it.
     pub name: String,

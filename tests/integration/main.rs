@@ -2,14 +2,22 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that panics has failed")]
 
+mod answers;
 mod built_in;
 mod bvh;
+mod cli;
+mod golden;
 mod layering;
+mod load_mtl;
+mod load_obj;
 mod mapping;
 mod metrics;
 mod numerics;
 mod oracle;
 mod progressive;
 mod reference;
+mod scene_file;
 mod shapes;
 mod support;
+#[cfg(feature = "viewer")]
+mod viewer;

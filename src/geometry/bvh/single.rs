@@ -45,40 +45,13 @@ impl Bvh {
         t_max: f32,
         filter: &F,
     ) -> Option<Hit> {
-        let (test, slabs) = (T::new(ray), RaySlabs::new(ray, self.reach));
-        let mut closest = Closest {
-            t: t_max,
+        let mut search = Closest {
+            limit: t_max,
             hit: None,
+            filter,
         };
-        let mut stack = Stack::new();
-        let mut next = self.root;
-        loop {
-            match next.unpack() {
-                Child::Node(index) => {
-                    let node = &self.nodes[index];
-                    let (mask, near) = node.hit_lanes(&slabs, closest.t);
-                    if let Some(child) = push_sorted(&mut stack, node, mask, &near) {
-                        next = child;
-                        continue;
-                    }
-                }
-                Child::Block(index) => {
-                    if let Some(block) = self.blocks.get(index) {
-                        test.intersect_block(&slabs, &block.corners, |lane, hit| {
-                            closest.offer(block.prims[lane], hit, filter);
-                            false
-                        });
-                    }
-                }
-            }
-            next = loop {
-                match stack.pop() {
-                    Some(entry) if entry.near <= closest.t => break entry.child,
-                    Some(_) => {}
-                    None => return closest.hit,
-                }
-            };
-        }
+        self.traverse::<T>(ray, &mut search);
+        search.hit
     }
 
     /// Whether anything is hit with `0 < t < t_max`.
@@ -89,6 +62,12 @@ impl Bvh {
         t_max: f32,
         filter: &F,
     ) -> bool {
+        self.traverse::<T>(ray, &mut Any { t_max, filter })
+    }
+
+    /// Offers the search what it may want, roughly from front to back; says whether it stopped early.
+    #[inline(always)]
+    fn traverse<T: TriangleTest>(&self, ray: &Ray, search: &mut impl Search) -> bool {
         let (test, slabs) = (T::new(ray), RaySlabs::new(ray, self.reach));
         let mut stack = Stack::new();
         let mut next = self.root;
@@ -96,46 +75,79 @@ impl Bvh {
             match next.unpack() {
                 Child::Node(index) => {
                     let node = &self.nodes[index];
-                    let (mut mask, near) = node.hit_lanes(&slabs, t_max);
-                    while mask != 0 {
-                        let lane = take_lowest(&mut mask);
-                        stack.push(Entry::of(node, lane, &near));
+                    let (mask, near) = node.hit_lanes(&slabs, search.limit());
+                    if let Some(child) = push_sorted(&mut stack, node, mask, &near) {
+                        next = child;
+                        continue;
                     }
                 }
                 Child::Block(index) => {
-                    let found = self.blocks.get(index).is_some_and(|block| {
+                    let stop = self.blocks.get(index).is_some_and(|block| {
                         test.intersect_block(&slabs, &block.corners, |lane, hit| {
-                            hit.t < t_max && filter.accept(block.prims[lane], hit.u, hit.v)
+                            search.offer(block.prims[lane], hit)
                         })
                     });
-                    if found {
+                    if stop {
                         return true;
                     }
                 }
             }
-            let Some(entry) = stack.pop() else {
-                return false;
+            next = loop {
+                match stack.pop() {
+                    Some(entry) if entry.near <= search.limit() => break entry.child,
+                    Some(_) => {}
+                    None => return false,
+                }
             };
-            next = entry.child;
         }
     }
 }
 
-/// The best hit so far.
-struct Closest {
-    /// Its distance; before the first hit, the end of the search.
-    t: f32,
-    hit: Option<Hit>,
+/// What a traversal is for.
+trait Search {
+    /// Boxes that begin beyond this distance are of no interest.
+    fn limit(&self) -> f32;
+    /// Considers a hit; `true` ends the search.
+    fn offer(&mut self, prim: u32, hit: TriangleHit) -> bool;
 }
 
-impl Closest {
-    /// Takes the hit if it is closer, or as close with a lower index, and the filter lets it count.
+/// Stops at the first hit that counts.
+struct Any<'a, F> {
+    t_max: f32,
+    filter: &'a F,
+}
+
+impl<F: HitFilter> Search for Any<'_, F> {
     #[inline(always)]
-    fn offer<F: HitFilter>(&mut self, prim: u32, hit: TriangleHit, filter: &F) {
-        let TriangleHit { t, u, v } = hit;
-        let wins_tie = || t == self.t && self.hit.is_some_and(|best| prim < best.prim);
-        if (t < self.t || wins_tie()) && filter.accept(prim, u, v) {
-            self.t = t;
+    fn limit(&self) -> f32 {
+        self.t_max
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, prim: u32, hit: TriangleHit) -> bool {
+        hit.t < self.t_max && self.filter.accept(prim, hit.u, hit.v)
+    }
+}
+
+/// Keeps the closest hit that counts.
+struct Closest<'a, F> {
+    /// Its distance; before the first hit, the end of the search.
+    limit: f32,
+    hit: Option<Hit>,
+    filter: &'a F,
+}
+
+impl<F: HitFilter> Search for Closest<'_, F> {
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.limit
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, prim: u32, TriangleHit { t, u, v }: TriangleHit) -> bool {
+        let wins_tie = || t == self.limit && self.hit.is_some_and(|best| prim < best.prim);
+        if (t < self.limit || wins_tie()) && self.filter.accept(prim, u, v) {
+            self.limit = t;
             self.hit = Some(Hit {
                 t,
                 prim,
@@ -144,6 +156,7 @@ impl Closest {
                 v,
             });
         }
+        false
     }
 }
 

@@ -218,3 +218,65 @@ impl TriangleTest for Watertight {
         false
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hit(origin: Vec3, dir: Vec3, corners: [Vec3; 3]) -> Option<TriangleHit> {
+        let ray = Ray { origin, dir };
+        let slabs = RaySlabs::new(&ray, 10.0);
+        Watertight::new(&ray).intersect(&slabs, &corners)
+    }
+
+    const TRIANGLE: [Vec3; 3] = [Vec3::ZERO, Vec3::X, Vec3::Y];
+
+    #[test]
+    fn reports_distance_and_weights_on_both_sides() {
+        for side in [1.0, -1.0] {
+            let at = hit(Vec3::new(0.25, 0.5, 2.0 * side), Vec3::Z * -side, TRIANGLE);
+            let expected = TriangleHit {
+                t: 2.0,
+                u: 0.25,
+                v: 0.5,
+            };
+            assert_eq!(at, Some(expected));
+        }
+        assert_eq!(hit(Vec3::new(0.25, 0.5, 2.0), Vec3::Z, TRIANGLE), None);
+        assert_eq!(hit(Vec3::new(0.25, 0.5, 0.0), Vec3::Z, TRIANGLE), None);
+        assert_eq!(hit(Vec3::new(0.7, 0.7, 2.0), -Vec3::Z, TRIANGLE), None);
+    }
+
+    #[test]
+    fn edges_and_corners_belong_to_the_triangle() {
+        for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.5), (0.5, 0.0)] {
+            let at = hit(Vec3::new(x, y, 1.0), -Vec3::Z, TRIANGLE);
+            assert_eq!(at.map(|h| [h.t, h.u, h.v]), Some([1.0, x, y]));
+        }
+    }
+
+    #[test]
+    fn a_ray_in_the_plane_and_triangles_without_area_are_missed() {
+        let into_the_edge = Vec3::new(1.0, 0.5, 0.0).normalize();
+        assert_eq!(hit(Vec3::new(-1.0, 0.25, 0.0), Vec3::X, TRIANGLE), None);
+        assert_eq!(
+            hit(Vec3::new(-1.0, 0.0, 0.0), into_the_edge, TRIANGLE),
+            None
+        );
+        assert_eq!(hit(-Vec3::Z, Vec3::Z, [Vec3::ZERO; 3]), None);
+        assert_eq!(
+            hit(-Vec3::Z, Vec3::Z, [Vec3::ZERO, Vec3::X, Vec3::X * 2.0]),
+            None
+        );
+    }
+
+    #[test]
+    fn edge_functions_that_underflow_are_decided_in_f64() {
+        // Products of these lengths are below the smallest f32.
+        let corners = TRIANGLE.map(|c| c * 1e-25);
+        let from = |x: f32, y: f32| hit(Vec3::new(x, y, 1.0) * 1e-25, -Vec3::Z, corners);
+        assert!(from(0.25, 0.25).is_some_and(|h| (h.u - 0.25).abs() < 1e-6));
+        assert_eq!(from(0.7, 0.7), None);
+        assert_eq!(from(-0.1, 0.3), None);
+    }
+}

@@ -92,6 +92,8 @@ pub struct ShadowBatch {
 /// Arrays that a worker uses for one tile after another, so that the steady state allocates nothing.
 #[derive(Debug, Default)]
 pub struct Scratch {
+    /// The tile's pixels in this pass.
+    pub pixels: Vec<super::tile::TilePixel>,
     /// Rays of this bounce.
     pub queue: RayQueue,
     /// Rays of the next.

@@ -54,8 +54,11 @@ fn sort_by_material(frame: &Frame<'_>, hits: &[Option<Hit>], batch: &mut Surface
     batch
         .ray
         .extend((0..hits.len() as u32).filter(|&r| hits[r as usize].is_some()));
-    // Stable, so that points of one material stay in the order of their pixels.
-    batch.ray.sort_by_key(|&r| run_key(frame, hits, r));
+    let key = |&r: &u32| run_key(frame, hits, r);
+    if !batch.ray.is_sorted_by_key(key) {
+        // Stable, so that points of one material stay in the order of their pixels.
+        batch.ray.sort_by_key(key);
+    }
 }
 
 fn map_run(

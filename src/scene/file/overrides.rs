@@ -36,7 +36,7 @@ pub fn apply_overrides(
     if overrides.is_empty() {
         return Ok(());
     }
-    let base = Path::new(".");
+    let base = Path::new("");
     let fail = |message: String| OverrideError {
         assignment: shown(overrides),
         message,

@@ -4,17 +4,20 @@ use std::path::{Component, Path, PathBuf};
 
 /// One spelling per file: links and dots resolved where the file exists, absolute otherwise.
 pub(super) fn settled(path: &Path) -> PathBuf {
+    // The empty path is the working folder, as in joins.
+    let path = if path == Path::new("") {
+        Path::new(".")
+    } else {
+        path
+    };
     path.canonicalize()
         .or_else(|_| std::path::absolute(path))
         .unwrap_or_else(|_| path.to_owned())
 }
 
-/// The folder of a file; `.` for a bare name.
+/// The folder of a file; empty for a bare name, so that what is joined to it stays as short.
 pub(super) fn folder(path: &Path) -> &Path {
-    match path.parent() {
-        Some(parent) if parent != Path::new("") => parent,
-        _ => Path::new("."),
-    }
+    path.parent().unwrap_or(Path::new(""))
 }
 
 /// `path` as seen from `base`; absolute if they share nothing but the root.

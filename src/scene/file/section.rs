@@ -172,8 +172,8 @@ impl<'a> Item<'a> {
     fn wrong_type(&self, wanted: &str) -> Fault {
         let found = match self.value.get_ref() {
             DeValue::String(s) => format!("the string \"{s}\""),
-            DeValue::Integer(n) => format!("the number {n}"),
-            DeValue::Float(x) => format!("the number {x}"),
+            DeValue::Integer(n) => n.to_string(),
+            DeValue::Float(x) => x.to_string(),
             DeValue::Boolean(b) => format!("{b}"),
             DeValue::Datetime(_) => "a date".to_owned(),
             DeValue::Array(a) => format!("an array of {}", a.len()),

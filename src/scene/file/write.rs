@@ -105,7 +105,7 @@ fn save(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     // Beside the target: a rename is atomic only within one file system.
     let mut file = tempfile::Builder::new()
         .prefix(".reliefscope-")
-        .tempfile_in(folder(path))?;
+        .tempfile_in(Path::new(".").join(folder(path)))?;
     file.write_all(bytes)?;
     file.as_file().sync_all()?;
     let permissions = std::fs::metadata(path).map(|old| old.permissions());

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::recognise::compare;
+use super::compare::compare;
 use crate::geometry::{Normalization, TriangleMesh};
 use crate::shading::Material;
 use crate::texture::{MapImage, MapRole, MapSlot};

@@ -23,7 +23,7 @@ pub fn torus() -> Stage {
     let copper = palette.relief(
         Relief::Hammered,
         0.6,
-        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 24.0).mirroring(0.20),
+        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 24.0).mirroring(0.12),
     );
     let mut mesh = floor(14.0, 2.6, tiles);
     let ring = meshes::torus([1.0, 0.42], [160, 80], [7.0, 3.0], cobble);
@@ -54,7 +54,7 @@ pub fn sphere() -> Stage {
     let copper = palette.relief(
         Relief::Hammered,
         1.05,
-        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 26.0).mirroring(0.20),
+        Finish::metal(LinearRgb::new(1.0, 0.72, 0.52), 26.0).mirroring(0.12),
     );
     let cane = palette.relief(Relief::Weave, 0.62, Finish::glossy(0.05, 15.0));
     let glaze = palette.relief(

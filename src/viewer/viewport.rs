@@ -1,0 +1,176 @@
+//! The picture fills the window; the mouse moves the camera in it.
+
+use egui::{
+    ColorImage, Event, Modifiers, MouseWheelUnit, PointerButton, Rect, Response, Sense,
+    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, WidgetType, pos2,
+};
+use std::sync::Arc;
+
+use super::picking::Projection;
+use super::worker::{Frame, FrameStats, RenderWorker};
+use crate::scene::{Camera, Scene};
+
+/// Distance that one notch of the wheel leaves over.
+const ZOOM_PER_NOTCH: f64 = 0.86;
+/// Points of smooth scrolling that count as one notch.
+const POINTS_PER_NOTCH: f32 = 50.0;
+/// Radians of orbit for a drag over the picture's height.
+const ORBIT_PER_HEIGHT: f64 = std::f64::consts::PI;
+
+/// The framebuffer as the window shows it.
+#[derive(Default)]
+pub struct Framebuffer {
+    texture: Option<TextureHandle>,
+    /// Shared with the uploader until the frame is painted.
+    shown: Option<Arc<ColorImage>>,
+    retired: Vec<Arc<ColorImage>>,
+    stats: FrameStats,
+    frames: u64,
+}
+
+impl Framebuffer {
+    /// What is known about the shown frame.
+    #[must_use]
+    pub const fn stats(&self) -> &FrameStats {
+        &self.stats
+    }
+
+    /// Frames shown so far.
+    #[must_use]
+    pub const fn frames(&self) -> u64 {
+        self.frames
+    }
+
+    /// The shown pixels.
+    #[must_use]
+    pub fn image(&self) -> Option<&ColorImage> {
+        self.shown.as_deref()
+    }
+
+    /// Uploads a frame and hands buffers that are free again back to the worker.
+    pub fn show(&mut self, ctx: &egui::Context, frame: Frame, worker: &RenderWorker) {
+        let image = Arc::new(frame.image);
+        let options = TextureOptions::LINEAR;
+        match &mut self.texture {
+            // A partial update of everything keeps the allocation.
+            Some(texture) if texture.size() == image.size => {
+                texture.set_partial([0, 0], Arc::clone(&image), options);
+            }
+            Some(texture) => texture.set(Arc::clone(&image), options),
+            None => {
+                let texture = ctx.load_texture("framebuffer", Arc::clone(&image), options);
+                self.texture = Some(texture);
+            }
+        }
+        self.retired.extend(self.shown.replace(image));
+        for old in std::mem::take(&mut self.retired) {
+            match Arc::try_unwrap(old) {
+                Ok(image) => worker.recycle(image.pixels),
+                Err(still_uploading) => self.retired.push(still_uploading),
+            }
+        }
+        self.stats = frame.stats;
+        self.frames += 1;
+    }
+
+    /// Paints the last frame over the rectangle, stretched while the next size is on its way.
+    pub fn paint(&self, ui: &Ui, rect: Rect) {
+        if let Some(texture) = &self.texture {
+            let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            let painter = ui.painter();
+            painter.image(texture.id(), rect, uv, egui::Color32::WHITE);
+        }
+    }
+}
+
+/// Size of the framebuffer for a rectangle in points, within what the graphics card takes.
+#[must_use]
+pub fn framebuffer_size(ctx: &egui::Context, rect: Rect) -> [u32; 2] {
+    let most = ctx.input(|i| i.max_texture_side).max(1) as f32;
+    let size = (rect.size() * ctx.pixels_per_point()).round();
+    let fit = (most / size.x.max(size.y).max(1.0)).min(1.0);
+    [size.x, size.y].map(|n| ((n * fit) as u32).max(1))
+}
+
+/// What clicks in the picture asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ViewportClick {
+    /// Tell the story of the pixel at this place.
+    Probe(egui::Pos2),
+}
+
+/// Senses the whole rectangle. Drawn first, so that whatever lies over it goes first.
+pub fn sense_ui(ui: &Ui, rect: Rect) -> Response {
+    let response = ui.interact(rect, egui::Id::new("viewport"), Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, "viewport"));
+    response
+}
+
+/// Orbit, pan, zoom and pivot; returns a click that means something else.
+pub fn navigate(
+    ui: &Ui,
+    response: &Response,
+    scene: &Scene,
+    camera: &mut Camera,
+) -> Option<ViewportClick> {
+    let modifiers = ui.input(|i| i.modifiers);
+    drag(response, modifiers, camera);
+    if response.contains_pointer() {
+        zoom(ui, response, scene, camera);
+    }
+    let pos = response.interact_pointer_pos()?;
+    if response.double_clicked_by(PointerButton::Primary) {
+        if let Some(hit) = Projection::new(camera, response.rect).pick(scene, pos) {
+            set_pivot(camera, hit);
+        }
+        return None;
+    }
+    (response.clicked() && modifiers.alt).then_some(ViewportClick::Probe(pos))
+}
+
+fn drag(response: &Response, modifiers: Modifiers, camera: &mut Camera) {
+    let delta = response.drag_delta() / response.rect.height().max(1.0);
+    if delta == Vec2::ZERO {
+        return;
+    }
+    let (x, y) = (f64::from(delta.x), f64::from(delta.y));
+    let primary = response.dragged_by(PointerButton::Primary);
+    if response.dragged_by(PointerButton::Middle)
+        || response.dragged_by(PointerButton::Secondary)
+        || (primary && modifiers.shift)
+    {
+        camera.pan(-x, y);
+    } else if primary {
+        camera.orbit(-x * ORBIT_PER_HEIGHT, y * ORBIT_PER_HEIGHT);
+    }
+}
+
+/// Takes raw wheel events: egui spreads a notch over ten frames, which would be ten restarts.
+fn zoom(ui: &Ui, response: &Response, scene: &Scene, camera: &mut Camera) {
+    let notches: f32 = ui.input(|input| {
+        let notches = input.events.iter().map(|event| match event {
+            Event::MouseWheel { unit, delta, .. } => match unit {
+                MouseWheelUnit::Point => delta.y / POINTS_PER_NOTCH,
+                MouseWheelUnit::Line => delta.y,
+                MouseWheelUnit::Page => delta.y * 4.0,
+            },
+            Event::Zoom(factor) => factor.max(0.01).ln() * 4.0,
+            _ => 0.0,
+        });
+        notches.sum()
+    });
+    let pos = response.hover_pos();
+    if let Some(pos) = pos.filter(|_| notches != 0.0 && notches.is_finite()) {
+        let fixed = Projection::new(camera, response.rect).anchor(scene, pos);
+        let factor = ZOOM_PER_NOTCH.powf(f64::from(notches.clamp(-20.0, 20.0)));
+        camera.zoom_towards(fixed, factor);
+    }
+}
+
+/// Moves the pivot to a point and the camera sideways with it, so that the view does not turn.
+fn set_pivot(camera: &mut Camera, pivot: glam::DVec3) {
+    let forward = camera.axes().forward;
+    let shift = pivot - camera.target;
+    camera.eye += shift - forward * shift.dot(forward);
+    camera.target = pivot;
+}

@@ -1,0 +1,95 @@
+//! Small windows over the picture: keys and mouse, a pixel's story, and what covers everything.
+
+use egui::{Align2, Color32, FontId, Grid, Id, LayerId, Order, Rect, RichText, ScrollArea, Window};
+
+use super::commands::{self, Group};
+use super::theme;
+
+/// Keys and mouse, from the command table.
+pub fn help_ui(ctx: &egui::Context, open: &mut bool) {
+    Window::new("Keys and mouse")
+        .open(open)
+        .collapsible(false)
+        .resizable(false)
+        .anchor(Align2::CENTER_CENTER, egui::Vec2::ZERO)
+        .show(ctx, |ui| {
+            ui.horizontal_top(|ui| {
+                Grid::new("mouse")
+                    .num_columns(2)
+                    .spacing([18.0, 5.0])
+                    .show(ui, |ui| {
+                        ui.strong("Mouse");
+                        ui.end_row();
+                        for (gesture, meaning) in commands::MOUSE {
+                            ui.colored_label(theme::ACCENT, gesture);
+                            ui.label(meaning);
+                            ui.end_row();
+                        }
+                    });
+                ui.add_space(16.0);
+                keys_ui(ui);
+            });
+        });
+}
+
+fn keys_ui(ui: &mut egui::Ui) {
+    Grid::new("keys")
+        .num_columns(2)
+        .spacing([18.0, 5.0])
+        .show(ui, |ui| {
+            let table = commands::table();
+            for group in Group::ALL {
+                ui.strong(group.label());
+                ui.end_row();
+                for row in table.iter().filter(|row| row.group == group) {
+                    ui.colored_label(theme::ACCENT, commands::keys_text(ui.ctx(), row));
+                    ui.label(row.label);
+                    ui.end_row();
+                }
+            }
+        });
+}
+
+/// A pixel's story; closing the window forgets it.
+pub fn story_ui(ctx: &egui::Context, story: &mut Option<String>) {
+    let Some(text) = story else { return };
+    let mut open = true;
+    Window::new("Pixel's story")
+        .open(&mut open)
+        .default_size([520.0, 420.0])
+        .default_pos([20.0, 20.0])
+        .vscroll(false)
+        .show(ctx, |ui| {
+            if ui.button("Copy").clicked() {
+                ctx.copy_text(text.clone());
+            }
+            ScrollArea::both()
+                .auto_shrink([false, false])
+                .show(ui, |ui| {
+                    let label = RichText::new(text.as_str()).monospace();
+                    ui.add(egui::Label::new(label).extend().selectable(true));
+                });
+        });
+    if !open {
+        *story = None;
+    }
+}
+
+/// Tells that a file held over the window can be dropped.
+pub fn drop_hint_ui(ctx: &egui::Context, window: Rect) {
+    let hovered = ctx.input(|input| !input.raw.hovered_files.is_empty());
+    if hovered {
+        let text =
+            "Drop a model or a scene to open it,\na picture to put it on the selected material";
+        cover(ctx, window, text);
+    }
+}
+
+/// Words in the middle of a darkened window.
+pub fn cover(ctx: &egui::Context, window: Rect, text: &str) {
+    let painter = ctx.layer_painter(LayerId::new(Order::Foreground, Id::new("cover")));
+    painter.rect_filled(window, 0.0, Color32::from_black_alpha(170));
+    let font = FontId::proportional(20.0);
+    let center = window.center();
+    painter.text(center, Align2::CENTER_CENTER, text, font, theme::TEXT);
+}

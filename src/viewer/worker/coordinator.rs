@@ -1,0 +1,387 @@
+//! What the rendering thread does next: take a request, save, render a pass, or sleep.
+
+use std::any::Any;
+use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, PoisonError};
+use std::time::{Duration, Instant};
+
+use egui::{Color32, ColorImage};
+
+use super::{
+    FirstPass, Frame, FrameStats, PassRenderer, Refinement, RenderNote, RenderRequest,
+    RendererFactory, Shared, lock,
+};
+use crate::render::{PassEnd, Snapshot};
+use crate::scene::save_picture::{SaveError, write_exr, write_png};
+
+/// Milliseconds that a first pass may take: the rest of a 60 Hz interval goes to encoding and the window.
+const FIRST_PASS_MILLIS: f32 = 13.0;
+/// A stride becomes finer only when the finer pass is expected to fit with this margin, so that the
+/// resolution does not flicker during a drag.
+const FINER_MARGIN: f32 = 0.75;
+/// Full passes slower than this are approached through every finer preview instead of at once.
+const SLOW_PASS_MILLIS: f32 = 60.0;
+/// The coarsest preview: one pixel in 64.
+const COARSEST: u32 = 8;
+/// Refinement shows its first samples as they come, later ones ten times a second: each shown frame costs
+/// an encoding and an upload that the refinement itself could use.
+const SHOW_EVERY: Duration = Duration::from_millis(100);
+/// Samples that are shown as they come.
+const FAST_SAMPLES: u32 = 4;
+
+/// The request being worked on.
+struct Job {
+    generation: u64,
+    request: RenderRequest,
+    /// Stride of what is in the film; 0 before the first pass.
+    stride: u32,
+    /// Time spent on the pass under way, stopped parts included.
+    spent: Duration,
+    /// Duration of the last complete pass.
+    pass_millis: f32,
+    /// Rays of the last complete pass, and of all up to it.
+    pass_rays: u64,
+    rays: u64,
+    /// A panic ended it; nothing more is tried until the next request.
+    failed: bool,
+}
+
+enum Step {
+    Quit,
+    Take(u64, RenderRequest),
+    Save(PathBuf),
+    Render,
+}
+
+pub(super) struct Coordinator {
+    shared: Arc<Shared>,
+    factory: RendererFactory,
+    renderer: Option<(usize, Box<dyn PassRenderer>)>,
+    job: Option<Job>,
+    bytes: Vec<[u8; 4]>,
+    /// Expected cost of a first pass; `None` before anything was measured in this scene.
+    nanos_per_pixel: Option<f32>,
+    /// Stride of the last first pass.
+    stride: u32,
+    passes: u64,
+    shown_at: Option<Instant>,
+}
+
+impl Coordinator {
+    pub(super) fn new(shared: Arc<Shared>, factory: RendererFactory) -> Self {
+        Self {
+            shared,
+            factory,
+            renderer: None,
+            job: None,
+            bytes: Vec::new(),
+            nanos_per_pixel: None,
+            stride: COARSEST,
+            passes: 0,
+            shown_at: None,
+        }
+    }
+
+    pub(super) fn run(mut self) {
+        loop {
+            match self.next_step() {
+                Step::Quit => return,
+                Step::Take(generation, request) => self.take(generation, request),
+                Step::Save(path) => self.save(&path),
+                Step::Render => self.guarded(Self::render),
+            }
+        }
+    }
+
+    /// Sleeps until there is something to do.
+    fn next_step(&self) -> Step {
+        let mut inbox = lock(&self.shared.inbox);
+        loop {
+            if self.shared.quit.load(Ordering::Acquire) {
+                return Step::Quit;
+            }
+            if let Some((generation, request)) = inbox.request.take() {
+                return Step::Take(generation, request);
+            }
+            if self.has_sample() && !inbox.saves.is_empty() {
+                return Step::Save(inbox.saves.remove(0));
+            }
+            if self.has_work() {
+                return Step::Render;
+            }
+            self.shared.asleep.store(true, Ordering::Release);
+            inbox = self
+                .shared
+                .bell
+                .wait(inbox)
+                .unwrap_or_else(PoisonError::into_inner);
+            self.shared.asleep.store(false, Ordering::Release);
+        }
+    }
+
+    fn has_sample(&self) -> bool {
+        let job = self.job.as_ref();
+        job.is_some_and(|job| job.stride == 1 && !job.failed)
+    }
+
+    fn is_converged(&self) -> bool {
+        self.has_sample() && self.renderer.as_ref().is_some_and(|r| r.1.is_converged())
+    }
+
+    fn has_work(&self) -> bool {
+        let Some(job) = self.job.as_ref().filter(|job| !job.failed) else {
+            return false;
+        };
+        let running = job.request.refinement == Refinement::Running;
+        job.stride != 1 || (running && !self.is_converged())
+    }
+
+    fn take(&mut self, generation: u64, request: RenderRequest) {
+        let keeps_film =
+            |job: &&mut Job| !job.failed && job.stride > 0 && job.request.same_samples(&request);
+        if let Some(job) = self.job.as_mut().filter(keeps_film) {
+            job.generation = generation;
+            job.request = request;
+            self.publish();
+            return;
+        }
+        if let Some(job) = &self.job
+            && !Arc::ptr_eq(&job.request.snapshot.scene, &request.snapshot.scene)
+        {
+            self.nanos_per_pixel = None;
+            self.stride = COARSEST;
+        }
+        self.job = Some(Job {
+            generation,
+            request,
+            stride: 0,
+            spent: Duration::ZERO,
+            pass_millis: 0.0,
+            pass_rays: 0,
+            rays: 0,
+            failed: false,
+        });
+        self.guarded(Self::start);
+    }
+
+    /// Runs one step of a job; a panic in it ends the job, not the program.
+    fn guarded(&mut self, step: impl FnOnce(&mut Self) -> io::Result<()>) {
+        let message = match catch_unwind(AssertUnwindSafe(|| step(self))) {
+            Ok(Ok(())) => return,
+            Ok(Err(error)) => format!("The renderer could not start: {error}"),
+            Err(panic) => {
+                // Its state is not to be trusted any more.
+                self.renderer = None;
+                format!("Rendering failed{}: {}", self.story(), panic_text(&*panic))
+            }
+        };
+        if let Some(job) = &mut self.job {
+            job.failed = true;
+        }
+        self.note(RenderNote::Error(message));
+    }
+
+    /// What was being rendered, for whoever has to reproduce it.
+    fn story(&self) -> String {
+        self.job.as_ref().map_or_else(String::new, |job| {
+            let Snapshot {
+                scene,
+                settings,
+                size: [w, h],
+            } = &job.request.snapshot;
+            let method = settings.mapping.method.name();
+            let (name, passes) = (&scene.name, self.passes);
+            format!(" ({name} at {w}x{h}, method {method}, after {passes} passes)")
+        })
+    }
+
+    fn start(&mut self) -> io::Result<()> {
+        let Some(job) = &self.job else { return Ok(()) };
+        let (threads, snapshot) = (job.request.threads, job.request.snapshot.clone());
+        if self.renderer.as_ref().is_none_or(|(n, _)| *n != threads) {
+            // The old pool goes first: two at once would fight for the cores.
+            self.renderer = None;
+            self.renderer = Some((threads, (self.factory)(threads)?));
+        }
+        if let Some((_, renderer)) = &mut self.renderer {
+            renderer.start(snapshot);
+        }
+        Ok(())
+    }
+
+    fn render(&mut self) -> io::Result<()> {
+        let Some(stride) = self.choose_stride() else {
+            return Ok(());
+        };
+        let Some((job, (_, renderer))) = self.job.as_ref().zip(self.renderer.as_mut()) else {
+            return Ok(());
+        };
+        let (shared, generation, first) = (&*self.shared, job.generation, job.stride == 0);
+        let stop = || {
+            let outdated = || shared.newest.load(Ordering::Relaxed) != generation;
+            shared.quit.load(Ordering::Relaxed) || (!first && outdated())
+        };
+        let began = Instant::now();
+        let end = if stride == 1 {
+            renderer.pass(&stop)
+        } else {
+            renderer.preview(stride, &stop)
+        };
+        if let Some(job) = &mut self.job {
+            job.spent += began.elapsed();
+        }
+        if end == PassEnd::Complete {
+            self.complete(stride);
+        }
+        Ok(())
+    }
+
+    /// Stride of the next pass: at first the finest that should fit into a screen interval, then finer ones.
+    fn choose_stride(&mut self) -> Option<u32> {
+        let job = self.job.as_ref()?;
+        let size = job.request.snapshot.size;
+        let millis = |stride| {
+            let pixels = pixels_of(size, stride);
+            self.nanos_per_pixel.map(|nanos| nanos * pixels * 1e-6)
+        };
+        let slow = millis(1).is_none_or(|full| full > SLOW_PASS_MILLIS);
+        match (job.stride, job.request.first_pass) {
+            (0, FirstPass::FullResolution) | (1 | 2, _) => Some(1),
+            (0, FirstPass::Adaptive) => {
+                let limit = |stride| {
+                    FIRST_PASS_MILLIS
+                        * if stride < self.stride {
+                            FINER_MARGIN
+                        } else {
+                            1.0
+                        }
+                };
+                let fits = |&stride: &u32| millis(stride).is_some_and(|t| t <= limit(stride));
+                self.stride = [1, 2, 4].into_iter().find(fits).unwrap_or(COARSEST);
+                Some(self.stride)
+            }
+            (stride, _) => Some(if slow { stride / 2 } else { 1 }),
+        }
+    }
+
+    fn complete(&mut self, stride: u32) {
+        self.passes += 1;
+        let Some((job, (_, renderer))) = self.job.as_mut().zip(self.renderer.as_ref()) else {
+            return;
+        };
+        let took = std::mem::take(&mut job.spent).as_secs_f32();
+        let before = std::mem::replace(&mut job.stride, stride);
+        let rays = renderer.counters().rays();
+        job.pass_rays = rays.saturating_sub(job.rays);
+        job.rays = rays;
+        job.pass_millis = took * 1e3;
+        if before != 1 {
+            // Later samples say nothing about a first pass, whose hits may be cached.
+            let nanos = took * 1e9 / pixels_of(job.request.snapshot.size, stride);
+            let known = self.nanos_per_pixel.unwrap_or(nanos);
+            self.nanos_per_pixel = Some(0.5 * (known + nanos));
+        }
+        let due = self.shown_at.is_none_or(|at| at.elapsed() >= SHOW_EVERY);
+        let young = before != 1 || renderer.samples() <= FAST_SAMPLES;
+        if young || due || self.is_converged() {
+            self.publish();
+        }
+    }
+
+    /// Encodes the film, puts it into the outbox and wakes the window.
+    fn publish(&mut self) {
+        let converged = self.is_converged();
+        let Some((job, (_, renderer))) = self.job.as_ref().zip(self.renderer.as_ref()) else {
+            return;
+        };
+        let Snapshot { settings, size, .. } = &job.request.snapshot;
+        let stats = FrameStats {
+            generation: job.generation,
+            stride: job.stride,
+            samples: if job.stride == 1 {
+                renderer.samples()
+            } else {
+                0
+            },
+            samples_wanted: settings.samples.max(1),
+            converged,
+            pass_millis: job.pass_millis,
+            pass_rays: job.pass_rays,
+            counters: renderer.counters(),
+            reshaded: renderer.reuses_hits(),
+            passes: self.passes,
+            threads: renderer.threads(),
+        };
+        let size = size.map(|n| n as usize);
+        self.bytes.resize(size[0] * size[1], [0, 0, 0, 255]);
+        renderer.encode_into(job.request.exposure_ev, &mut self.bytes);
+        let mut pixels = lock(&self.shared.outbox).spare.pop().unwrap_or_default();
+        pixels.clear();
+        let opaque = |&[r, g, b, _]: &[u8; 4]| Color32::from_rgb(r, g, b);
+        pixels.extend(self.bytes.iter().map(opaque));
+        let image = ColorImage::new(size, pixels);
+        self.shown_at = Some(Instant::now());
+        let replaced = {
+            let mut outbox = lock(&self.shared.outbox);
+            outbox.frame.replace(Frame { image, stats })
+        };
+        if let Some(unseen) = replaced {
+            lock(&self.shared.outbox).spare.push(unseen.image.pixels);
+        }
+        (self.shared.wake_window)();
+    }
+
+    fn save(&mut self, path: &Path) {
+        let Some((job, (_, renderer))) = self.job.as_ref().zip(self.renderer.as_ref()) else {
+            return;
+        };
+        let (samples, wanted) = (renderer.samples(), job.request.snapshot.settings.samples);
+        let note = match write_picture(path, renderer.as_ref(), job.request.exposure_ev) {
+            Ok(()) => RenderNote::Saved(format!(
+                "Saved {} ({samples} of {wanted} samples)",
+                path.display()
+            )),
+            Err(error) => RenderNote::Error(format!("Could not save: {error}")),
+        };
+        self.note(note);
+    }
+
+    fn note(&self, note: RenderNote) {
+        lock(&self.shared.outbox).notes.push(note);
+        (self.shared.wake_window)();
+    }
+}
+
+/// Writes what is shown, or linear values without exposure if the name ends in `.exr`.
+fn write_picture(
+    path: &Path,
+    renderer: &dyn PassRenderer,
+    exposure_ev: f32,
+) -> Result<(), SaveError> {
+    let picture = renderer.picture();
+    let size = [picture.width, picture.height];
+    let ending = path.extension();
+    if ending.is_some_and(|ending| ending.eq_ignore_ascii_case("exr")) {
+        let linear: Vec<_> = picture.pixels.iter().map(|c| c.to_array()).collect();
+        return write_exr(path, size, &linear);
+    }
+    let mut rgba = vec![[0; 4]; picture.pixels.len()];
+    renderer.encode_into(exposure_ev, &mut rgba);
+    let rgb: Vec<_> = rgba.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
+    write_png(path, size, &rgb)
+}
+
+/// Pixels that a pass with this stride renders.
+fn pixels_of([w, h]: [u32; 2], stride: u32) -> f32 {
+    w.div_ceil(stride) as f32 * h.div_ceil(stride) as f32
+}
+
+/// What a panic said.
+fn panic_text(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("no message")
+}

@@ -1,0 +1,7 @@
+//! The window, driven without a display: the real app through its accessibility tree, and its worker.
+
+mod controls;
+mod driver;
+mod files;
+mod navigation;
+mod worker;
