@@ -16,7 +16,7 @@ fn open_window(request: ViewRequest) -> Result<(), String> {
         threads: request.threads,
         normalize: request.normalize,
     })
-    .map_err(|error| format!("{error}; `reliefscope render` makes pictures without a window"))
+    .map_err(|error| error.to_string())
 }
 
 #[cfg(not(feature = "viewer"))]

@@ -1,4 +1,4 @@
-//! What may be typed. Only the parser reads these; commands take the checked [`options`](super::options).
+//! What may be typed. Only the parser reads these; commands take the checked `options`.
 
 use std::path::PathBuf;
 

@@ -24,7 +24,9 @@ pub(super) fn load(input: &Path, options: &LoadOptions) -> Result<LoadedScene, C
 /// Reads a scene and changes it. What has its own option goes before `--set`.
 pub(super) fn load_changed(options: &SceneOptions) -> Result<LoadedScene, CliError> {
     let mut loaded = load(&options.input, &options.load)?;
+    let told = loaded.warnings.len();
     apply_overrides(&mut loaded, &options.overrides)?;
+    output::warn(&loaded.warnings[told..]);
     if let Some(method) = options.method {
         loaded.settings.mapping.method = method;
     }

@@ -1,7 +1,7 @@
 //! The command line: arguments → checked options → command → exit code.
 //!
-//! - [`args`]: what may be typed, for the parser; [`help`]: what `--help` teaches
-//! - [`options`]: arguments after checking, as commands take them
+//! - `args`: what may be typed, for the parser; `help`: what `--help` teaches
+//! - `options`: arguments after checking, as commands take them
 //! - `render`, `inspect`, `probe`, `lists`: one file per command; `input`: what they share
 
 mod args;

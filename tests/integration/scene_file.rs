@@ -371,7 +371,7 @@ ks = [1, 1, 1]
     assert_eq!(loaded.scene.images.len(), 3);
     let note = loaded.warnings.iter().find(|w| w.message.contains("rin"));
     let note = note.expect("an unknown material is noted");
-    assert_eq!(note.line, Some(15));
+    assert_eq!(note.line, Some(16));
     assert!(note.message.contains("\"rim\""), "the nearest: {note}");
 }
 
@@ -760,6 +760,18 @@ fn overrides_that_cannot_be_done_name_the_key() {
         assert!(message.contains(word), "{word}: {message}");
         assert!(!message.contains('\n'), "one line: {message}");
     }
+}
+
+#[test]
+fn overrides_with_a_doubtful_effect_are_warnings() {
+    let folder = Folder::new();
+    let mut loaded = folder.open("plane.obj");
+    let known = loaded.warnings.len();
+    set(&mut loaded, &[("material.rim.normal_y", "down")]).expect("is harmless");
+    let [new] = &loaded.warnings[known..] else {
+        panic!("{:?}", loaded.warnings)
+    };
+    assert!(new.message.contains("normal_y"), "{new}");
 }
 
 #[test]

@@ -1,8 +1,7 @@
 //! The scene file, TOML: everything the panel can set. `docs/scene.md` explains every key.
 //!
-//! Reading goes in two steps. [`parse`] turns text into a [`Document`](document::Document), plain data that
-//! holds just the keys that are there, with type, range and spelling checked and each fault at its line.
-//! [`apply`] lays that over the scene that the model brings. Writing goes the other way, and `--set` goes
+//! Reading goes in two steps. `parse` turns text into a `Document`, plain data that holds just the keys that
+//! are there, with type, range and spelling checked and each fault at its line. `apply` lays that over the scene that the model brings. Writing goes the other way, and `--set` goes
 //! round: the scene is written, the text changed, and read back, so that a key means the same everywhere.
 
 mod apply;

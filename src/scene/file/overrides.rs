@@ -1,6 +1,6 @@
 //! `--set key=value`: any key of the scene file, for any kind of input.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use toml::Value;
 
@@ -8,7 +8,7 @@ use super::apply::apply;
 use super::fault::nearest;
 use super::parse::parse;
 use super::write::{SceneView, scene_text};
-use crate::scene::LoadedScene;
+use crate::scene::{LoadWarning, LoadedScene};
 
 /// A `--set` that cannot be done.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -25,7 +25,9 @@ pub struct OverrideError {
 /// A key is the path through the file: `camera.vfov_deg`, `light.0.intensity`, `shading.background`. Lights and
 /// materials go by number, by name (`material.brick.ks`; `material."a.b".ks` for names with dots) or all at
 /// once (`material.*.kd`), maps by number or role (`material.brick.map.height.gain`). A value is TOML, or a
-/// bare word for a string. Paths are relative to the working folder.
+/// bare word for a string. Paths are relative to the working folder. What is doubtful joins the warnings.
+///
+/// `loaded.scene` must not be shared yet, as pictures may be added to it.
 ///
 /// # Errors
 /// [`OverrideError`] naming the key, if it does not exist or does not take the value.
@@ -55,11 +57,14 @@ pub fn apply_overrides(
     let text = toml::to_string(&tree).map_err(|e| fail(e.to_string()))?;
     let document = parse(&text).map_err(|fault| fail(fault.message))?;
     let doubts = apply(&document, loaded, base).map_err(|fault| fail(fault.message))?;
-    // In a file these are warnings; on a command line somebody has just typed them.
-    doubts
-        .into_iter()
-        .next()
-        .map_or(Ok(()), |doubt| Err(fail(doubt.message)))
+    loaded
+        .warnings
+        .extend(doubts.into_iter().map(|doubt| LoadWarning {
+            file: PathBuf::from("--set"),
+            line: None,
+            message: doubt.message,
+        }));
+    Ok(())
 }
 
 fn shown(overrides: &[(String, String)]) -> String {

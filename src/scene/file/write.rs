@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::paths::{folder, relative};
 use super::text::{Text, degrees};
 use super::write_material::material;
+use crate::scene::save_picture::temporary_beside;
 use crate::scene::{Background, DisplaySettings, LoadedScene, RenderSettings, Scene, SceneSource};
 use crate::shading::{Light, LightKind};
 
@@ -47,6 +48,9 @@ pub enum SaveError {
     /// TOML is UTF-8, and this path is not.
     #[error("{}: a scene file cannot hold a path that is not UTF-8", .0.display())]
     NotUtf8(PathBuf),
+    /// The scene says neither where its model is nor which built-in scene it is.
+    #[error("{}: the scene has no model to refer to", .0.display())]
+    NoModel(PathBuf),
     /// A number that TOML could hold but no scene means.
     #[error("`{0}` is not a finite number")]
     NotFinite(String),
@@ -102,29 +106,14 @@ pub(super) fn path_text(path: &Path, base: &Path) -> Result<String, SaveError> {
 }
 
 fn save(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    // Beside the target: a rename is atomic only within one file system.
-    let mut file = tempfile::Builder::new()
-        .prefix(".reliefscope-")
-        .tempfile_in(Path::new(".").join(folder(path)))?;
+    let mut file = temporary_beside(path)?;
     file.write_all(bytes)?;
     file.as_file().sync_all()?;
-    let permissions = std::fs::metadata(path).map(|old| old.permissions());
-    let file = file.persist(path).map_err(|e| e.error)?;
-    // Temporary files are private; a scene file is as readable as the one it replaces.
-    match permissions {
-        Ok(old) => file.set_permissions(old),
-        Err(_) => share(&file),
+    // What is replaced stays as private, or as shared, as it was.
+    if let Ok(old) = std::fs::metadata(path) {
+        file.as_file().set_permissions(old.permissions())?;
     }
-}
-
-#[cfg(unix)]
-fn share(file: &std::fs::File) -> std::io::Result<()> {
-    use std::os::unix::fs::PermissionsExt as _;
-    file.set_permissions(std::fs::Permissions::from_mode(0o644))
-}
-
-#[cfg(not(unix))]
-fn share(_file: &std::fs::File) -> std::io::Result<()> {
+    file.persist(path)?;
     Ok(())
 }
 
@@ -132,9 +121,8 @@ fn model(text: &mut Text, view: &SceneView<'_>, base: &Path) -> Result<(), SaveE
     match (&view.scene.facts.path, &view.scene.source) {
         (Some(path), _) => text.string("model", &path_text(path, base)?),
         (None, SceneSource::BuiltIn(name)) => text.string("built_in", name),
-        (None, SceneSource::Model(path) | SceneSource::SceneFile(path)) => {
-            text.string("model", &path_text(path, base)?);
-        }
+        (None, SceneSource::Model(path)) => text.string("model", &path_text(path, base)?),
+        (None, SceneSource::SceneFile(path)) => return Err(SaveError::NoModel(path.clone())),
     }
     let is_normalized = view.scene.normalization != crate::geometry::Normalization::IDENTITY;
     text.raw("normalize", is_normalized);
