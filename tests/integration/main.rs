@@ -1,9 +1,6 @@
 //! One binary for all integration tests, so that they link once.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test that panics has failed; the configuration exempts only the test functions themselves"
-)]
+#![expect(clippy::unwrap_used, reason = "a test that panics has failed")]
 
 mod answers;
 mod bvh;

@@ -25,6 +25,7 @@
 
 mod amplitude;
 mod compare;
+mod grey_floats;
 mod library;
 mod lookup;
 mod map_statement;

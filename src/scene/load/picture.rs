@@ -1,6 +1,7 @@
 //! The one door for picture decoding: files to raw samples, within limits, never a panic.
 
 use std::collections::HashMap;
+use std::fmt::Display;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -8,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
+use super::grey_floats::{grey_exr, grey_tiff};
 use crate::texture::{MapImage, RawImage, Samples};
 
 /// What a picture may cost before it is refused. Checked against the header, before samples are allocated.
@@ -43,9 +45,16 @@ pub struct DecodedPicture {
 #[error("{0}")]
 pub struct PictureError(String);
 
+impl PictureError {
+    /// With the words of a decoder.
+    pub(super) fn new(cause: &dyn Display) -> Self {
+        Self(cause.to_string())
+    }
+}
+
 /// Decodes a picture: PNG, JPEG, TGA, BMP, TIFF, Radiance HDR, OpenEXR, WebP or GIF (first frame).
 ///
-/// The format is told from the content; the extension counts only where the content has no mark, as in
+/// One-channel float TIFF and OpenEXR files are read too. The format is told from the content; the extension counts only where the content has no mark, as in
 /// most TGA files. 16 bits stay 16 and floats stay floats. Colour profiles and gamma marks are ignored:
 /// what samples mean is the caller's business.
 ///
@@ -54,34 +63,58 @@ pub struct PictureError(String);
 pub fn decode_picture(path: &Path, limits: &PictureLimits) -> Result<DecodedPicture, PictureError> {
     // Nothing outlives the closure but its result, so no broken state can be seen.
     catch_unwind(AssertUnwindSafe(|| decode(path, limits)))
-        .unwrap_or_else(|_| Err(PictureError("its decoder crashed".to_owned())))
+        .unwrap_or_else(|_| Err(PictureError::new(&"its decoder crashed")))
 }
 
 fn decode(path: &Path, limits: &PictureLimits) -> Result<DecodedPicture, PictureError> {
-    let failed = |e: &dyn std::fmt::Display| PictureError(e.to_string());
-    let mut file = BufReader::new(File::open(path).map_err(|e| failed(&e))?);
-    let format = format_of(&mut file, path).map_err(|e| failed(&e))?;
-    let Some(format) = format else {
-        return Err(PictureError("not a picture of a known format".to_owned()));
+    let io = |e: std::io::Error| PictureError::new(&e);
+    let mut file = BufReader::new(File::open(path).map_err(io)?);
+    let Some(format) = format_of(&mut file, path).map_err(io)? else {
+        return Err(PictureError::new(&"not a picture of a known format"));
     };
+    let general = decode_general(file, format, limits);
+    if general.is_ok() || !matches!(format, ImageFormat::OpenExr | ImageFormat::Tiff) {
+        return general;
+    }
+    let again = BufReader::new(File::open(path).map_err(io)?);
+    let grey = match format {
+        ImageFormat::OpenExr => grey_exr(again, limits),
+        _ => grey_tiff(again, limits),
+    };
+    // If neither can read it, the general decoder knows best why.
+    let mut image = grey.or_else(|_| general.map(|decoded| decoded.image))?;
+    let mut replaced = 0;
+    if let Samples::F32(samples) = &mut image.samples {
+        replaced = make_finite(samples);
+    }
+    Ok(DecodedPicture { image, replaced })
+}
+
+fn decode_general(
+    file: BufReader<File>,
+    format: ImageFormat,
+    limits: &PictureLimits,
+) -> Result<DecodedPicture, PictureError> {
+    let failed = |e: image::ImageError| PictureError::new(&e);
     let mut reader = ImageReader::with_format(file, format);
     let mut decoder_limits = Limits::no_limits();
     decoder_limits.max_alloc = Some(limits.max_bytes);
     reader.limits(decoder_limits);
-    let decoder = reader.into_decoder().map_err(|e| failed(&e))?;
+    let decoder = reader.into_decoder().map_err(failed)?;
     check(decoder.dimensions(), decoder.total_bytes(), limits)?;
-    let decoded = DynamicImage::from_decoder(decoder).map_err(|e| failed(&e))?;
+    let decoded = DynamicImage::from_decoder(decoder).map_err(failed)?;
     Ok(raw_samples(decoded))
 }
 
-fn check(
+/// Refuses what is empty or too large, before its samples are asked for.
+pub(super) fn check(
     (width, height): (u32, u32),
     bytes: u64,
     limits: &PictureLimits,
 ) -> Result<(), PictureError> {
     let side = limits.max_side;
     if width == 0 || height == 0 {
-        return Err(PictureError("it has no pixels".to_owned()));
+        return Err(PictureError::new(&"it has no pixels"));
     }
     if width > side || height > side {
         let message = format!("{width}×{height} pixels; at most {side}×{side} are read");
@@ -125,9 +158,8 @@ fn has_tga_footer<R: BufRead + Seek>(file: &mut R) -> std::io::Result<bool> {
 
 fn raw_samples(decoded: DynamicImage) -> DecodedPicture {
     let (width, height) = (decoded.width(), decoded.height());
-    let channels = decoded.color().channel_count();
-    let mut replaced = 0;
-    let samples = match decoded {
+    let mut channels = decoded.color().channel_count();
+    let mut samples = match decoded {
         DynamicImage::ImageLuma8(b) => Samples::U8(b.into_raw()),
         DynamicImage::ImageLumaA8(b) => Samples::U8(b.into_raw()),
         DynamicImage::ImageRgb8(b) => Samples::U8(b.into_raw()),
@@ -136,18 +168,17 @@ fn raw_samples(decoded: DynamicImage) -> DecodedPicture {
         DynamicImage::ImageLumaA16(b) => Samples::U16(b.into_raw()),
         DynamicImage::ImageRgb16(b) => Samples::U16(b.into_raw()),
         DynamicImage::ImageRgba16(b) => Samples::U16(b.into_raw()),
-        DynamicImage::ImageRgb32F(b) => Samples::F32(finite(b.into_raw(), &mut replaced)),
-        DynamicImage::ImageRgba32F(b) => Samples::F32(finite(b.into_raw(), &mut replaced)),
+        DynamicImage::ImageRgb32F(b) => Samples::F32(b.into_raw()),
+        DynamicImage::ImageRgba32F(b) => Samples::F32(b.into_raw()),
         // The enum may grow; floats hold whatever comes.
         other => {
-            let image = RawImage {
-                width,
-                height,
-                channels: 4,
-                samples: Samples::F32(finite(other.into_rgba32f().into_raw(), &mut replaced)),
-            };
-            return DecodedPicture { image, replaced };
+            channels = 4;
+            Samples::F32(other.into_rgba32f().into_raw())
         }
+    };
+    let replaced = match &mut samples {
+        Samples::F32(samples) => make_finite(samples),
+        _ => 0,
     };
     let image = RawImage {
         width,
@@ -158,14 +189,14 @@ fn raw_samples(decoded: DynamicImage) -> DecodedPicture {
     DecodedPicture { image, replaced }
 }
 
-fn finite(mut samples: Vec<f32>, replaced: &mut usize) -> Vec<f32> {
-    for sample in &mut samples {
-        if !sample.is_finite() {
-            *sample = 0.0;
-            *replaced += 1;
-        }
+/// Puts 0 in place of infinities and NaN; returns how many there were.
+fn make_finite(samples: &mut [f32]) -> usize {
+    let mut replaced = 0;
+    for sample in samples.iter_mut().filter(|s| !s.is_finite()) {
+        *sample = 0.0;
+        replaced += 1;
     }
-    samples
+    replaced
 }
 
 /// Pictures of one scene: each file is decoded once, however many slots use it.

@@ -30,6 +30,21 @@ struct Candidate {
     rank: u8,
     line: usize,
     amplitude: Option<f64>,
+    remarks: Vec<String>,
+}
+
+impl Candidate {
+    /// Takes in a statement that says the same again: the stronger of both counts, of equals the later.
+    fn merge(&mut self, again: Self) {
+        if again.rank <= self.rank {
+            self.amplitude = again.amplitude.or(self.amplitude);
+            self.rank = again.rank;
+            self.line = again.line;
+            self.slot.note = again.slot.note;
+        } else {
+            self.amplitude = self.amplitude.or(again.amplitude);
+        }
+    }
 }
 
 /// Turns the maps of one material into slots.
@@ -37,7 +52,6 @@ struct Candidate {
 /// Of several statements for one role the later wins, but `map_Bump` goes before `disp` for heights and
 /// `norm` before `map_Bump` for normals. Losers stay in the list, switched off. Exact repeats vanish.
 pub(super) fn slots_of(maps: &[PlacedMap<'_>], images: &[MapImage]) -> SlotSet {
-    let mut set = SlotSet::default();
     let albedo = maps
         .iter()
         .rfind(|m| m.statement.kind == MapKind::Albedo)
@@ -48,17 +62,20 @@ pub(super) fn slots_of(maps: &[PlacedMap<'_>], images: &[MapImage]) -> SlotSet {
         let candidate = match map.statement.kind {
             MapKind::Albedo => plain(map, MapRole::Albedo, image),
             MapKind::Opacity | MapKind::Transparency => {
-                opacity(map, image, albedo == Some(map.image), &mut set)
+                opacity(map, image, albedo == Some(map.image))
             }
-            MapKind::Bump | MapKind::Norm | MapKind::Disp => relief(map, image, &mut set),
+            MapKind::Bump | MapKind::Norm | MapKind::Disp => relief(map, image),
         };
-        let repeats = |c: &Candidate| same_use(&c.slot, &candidate.slot);
-        if let Some(known) = candidates.iter_mut().find(|c| repeats(c)) {
-            known.rank = known.rank.min(candidate.rank);
-            known.amplitude = known.amplitude.or(candidate.amplitude);
-        } else {
-            candidates.push(candidate);
+        let repeats = |c: &&mut Candidate| same_use(&c.slot, &candidate.slot);
+        match candidates.iter_mut().find(repeats) {
+            Some(known) => known.merge(candidate),
+            None => candidates.push(candidate),
         }
+    }
+    let mut set = SlotSet::default();
+    for Candidate { line, remarks, .. } in &mut candidates {
+        let told = remarks.drain(..).map(|message| (*line, message));
+        set.remarks.extend(told);
     }
     candidates.sort_by_key(|c| (c.slot.role as u8, c.rank, std::cmp::Reverse(c.line)));
     let normal_line = candidates
@@ -117,6 +134,7 @@ fn plain(map: &PlacedMap<'_>, role: MapRole, image: &MapImage) -> Candidate {
         rank: 0,
         line: *line,
         amplitude: None,
+        remarks: Vec::new(),
     }
 }
 
@@ -139,10 +157,9 @@ fn apply(options: &MapOptions, slot: &mut MapSlot) {
     };
 }
 
-fn opacity(map: &PlacedMap<'_>, image: &MapImage, is_albedo: bool, set: &mut SlotSet) -> Candidate {
+fn opacity(map: &PlacedMap<'_>, image: &MapImage, is_albedo: bool) -> Candidate {
     let mut candidate = plain(map, MapRole::Opacity, image);
     let MapStatement {
-        line,
         keyword,
         kind,
         options,
@@ -162,7 +179,7 @@ fn opacity(map: &PlacedMap<'_>, image: &MapImage, is_albedo: bool, set: &mut Slo
         }
         1.0 => {
             let message = format!("{keyword} makes the whole material invisible");
-            set.remarks.push((*line, message));
+            candidate.remarks.push(message);
         }
         _ => {}
     }
@@ -200,44 +217,46 @@ fn hole_share(image: &MapImage, slot: &MapSlot) -> f64 {
     holes as f64 / texels
 }
 
+/// What a map of relief is, why, and what is odd about that.
+fn recognise(kind: MapKind, look: Look) -> (MapRole, &'static str, Option<&'static str>) {
+    match (kind, look) {
+        (MapKind::Norm, Look::Grey) => (
+            MapRole::Height,
+            "grey, so heights",
+            Some("is grey; read as heights, not as normals"),
+        ),
+        (MapKind::Norm, Look::Normals) => (MapRole::Normal, "normals", None),
+        (MapKind::Norm, Look::Color) => (
+            MapRole::Normal,
+            "normals, though it does not look so",
+            Some("does not look like a normal map; read as one all the same"),
+        ),
+        (_, Look::Normals) => (
+            MapRole::Normal,
+            "looks like a normal map",
+            Some("looks like a normal map; read as one, not as heights"),
+        ),
+        (_, Look::Color) => (
+            MapRole::Height,
+            "luma of a colour picture as heights",
+            Some("is a colour picture; its luma is read as heights"),
+        ),
+        (_, Look::Grey) => (MapRole::Height, "heights", None),
+    }
+}
+
 /// A map of relief: heights or normals, by what the picture looks like.
-fn relief(map: &PlacedMap<'_>, image: &MapImage, set: &mut SlotSet) -> Candidate {
-    let MapStatement {
-        line,
-        keyword,
-        kind,
-        ..
-    } = map.statement;
-    let mut remark = |message: &str| {
-        let message = format!("{keyword}: {} {message}", image.name);
-        set.remarks.push((*line, message));
-    };
-    let (role, why) = match (kind, look_of(&image.raw)) {
-        (MapKind::Norm, Look::Grey) => {
-            remark("is grey; read as heights, not as normals");
-            (MapRole::Height, "grey, so heights")
-        }
-        (MapKind::Norm, Look::Normals) => (MapRole::Normal, "normals"),
-        (MapKind::Norm, Look::Color) => {
-            remark("does not look like a normal map; read as one all the same");
-            (MapRole::Normal, "normals, though it does not look so")
-        }
-        (_, Look::Normals) => {
-            remark("looks like a normal map; read as one, not as heights");
-            (MapRole::Normal, "looks like a normal map")
-        }
-        (_, Look::Color) => {
-            remark("is a colour picture; its luma is read as heights");
-            (MapRole::Height, "luma of a colour picture as heights")
-        }
-        (_, Look::Grey) => (MapRole::Height, "heights"),
-    };
+fn relief(map: &PlacedMap<'_>, image: &MapImage) -> Candidate {
+    let MapStatement { keyword, kind, .. } = map.statement;
+    let (role, why, odd) = recognise(*kind, look_of(&image.raw));
     let mut candidate = plain(map, role, image);
     candidate.rank = match (role, kind) {
         (MapRole::Height, MapKind::Bump) | (MapRole::Normal, MapKind::Norm) => 0,
         (_, MapKind::Bump) => 1,
         _ => 2,
     };
+    let told = odd.map(|odd| format!("{keyword}: {} {odd}", image.name));
+    candidate.remarks.extend(told);
     let slot = &mut candidate.slot;
     let described = if role == MapRole::Height {
         describe_heights(image, slot)

@@ -126,6 +126,47 @@ fn floats_stay_floats_and_finite() {
 }
 
 #[test]
+fn one_channel_floats_are_read() {
+    use exr::prelude::*;
+
+    let folder = folder();
+    let values = [236.5, f32::NAN, 1076.25, -3.0, 0.0, 7.0];
+    let expected = Samples::F32(vec![236.5, 0.0, 1076.25, -3.0, 0.0, 7.0]);
+
+    let path = folder.path().join("height.exr");
+    let channel = AnyChannel::new("Y", FlatSamples::F32(values.to_vec()));
+    let layer = Layer::new(
+        (3, 2),
+        LayerAttributes::named("relief"),
+        Encoding::FAST_LOSSLESS,
+        AnyChannels::sort([channel].into_iter().collect()),
+    );
+    Image::from_layer(layer)
+        .write()
+        .to_file(&path)
+        .expect("written");
+    let result = decode_picture(&path, &PictureLimits::default()).expect("a picture");
+    assert_eq!((result.image.width, result.image.height), (3, 2));
+    assert_eq!((result.image.channels, result.replaced), (1, 1));
+    assert_eq!(result.image.samples, expected);
+    let tight = PictureLimits {
+        max_side: 2,
+        ..PictureLimits::default()
+    };
+    assert!(decode_picture(&path, &tight).is_err());
+
+    let path = folder.path().join("height.tif");
+    let file = std::fs::File::create(&path).expect("a file");
+    tiff::encoder::TiffEncoder::new(file)
+        .expect("a header")
+        .write_image::<tiff::encoder::colortype::Gray32Float>(3, 2, &values)
+        .expect("written");
+    let result = decode_picture(&path, &PictureLimits::default()).expect("a picture");
+    assert_eq!(result.image.samples, expected);
+    assert!(decode_picture(&path, &tight).is_err());
+}
+
+#[test]
 fn alpha_is_kept() {
     let folder = folder();
     let picture = DynamicImage::ImageRgba8(ImageBuffer::from_pixel(2, 2, Rgba([1, 2, 3, 4])));

@@ -261,6 +261,20 @@ fn strengths_of_zero_and_below() {
 }
 
 #[test]
+fn of_equal_statements_the_later_strength_counts() {
+    let fixture = Fixture::with_library(
+        "newmtl m\nmap_bump -bm 1 a.png\nbump -bm 2 a.png\ndisp -bm 3 a.png\n\
+         newmtl n\nmap_bump c.png\nbump c.png\n",
+    );
+    fixture.grey("a.png");
+    fixture.rgb("c.png", |x, y| [180, (60 + (x * 5 + y) % 50) as u8, 40]);
+    let set = fixture.load(&["m", "n"]);
+    assert_eq!(set.materials[0].maps.len(), 1);
+    assert_eq!(set.materials[0].default_amplitude, 2.0);
+    assert_one_warning(&set, &["colour picture"]);
+}
+
+#[test]
 fn a_cancelled_load_stops() {
     let fixture = Fixture::with_library("newmtl m\nmap_Kd a.png\n");
     fixture.grey("a.png");
