@@ -2,7 +2,7 @@
 
 use egui::{
     Color32, CursorIcon, Painter, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo,
-    WidgetType, vec2,
+    Role, vec2,
 };
 use glam::{DQuat, DVec3};
 
@@ -56,10 +56,10 @@ pub fn markers_ui(ui: &Ui, rect: Rect, camera: &Camera, lights: &mut [Light]) {
 
 fn sense(ui: &Ui, pos: Pos2, i: usize, light: &Light) -> Response {
     let area = Rect::from_center_size(pos, Vec2::splat(2.0 * GRAB));
-    let id = egui::Id::new(("light marker", i));
+    let id = egui::Id::unique(("light marker", i));
     let response = ui.interact(area, id, Sense::click_and_drag());
     let name = format!("Marker of {}", light.name);
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, &name));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
     response
 }
 

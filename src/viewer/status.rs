@@ -94,7 +94,7 @@ pub fn status_ui(ctx: &egui::Context, window: Rect, status: &Status<'_>) -> bool
     let frame = egui::Frame::new()
         .fill(Color32::from_rgba_unmultiplied(16, 17, 19, 232))
         .inner_margin(egui::Margin::symmetric(12, 0));
-    Area::new(Id::new("status"))
+    Area::new(Id::unique("status"))
         .anchor(Align2::LEFT_BOTTOM, egui::Vec2::ZERO)
         .order(Order::Middle)
         .constrain(false)

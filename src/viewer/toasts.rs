@@ -73,7 +73,7 @@ impl Toasts {
             return;
         }
         let mut dismissed = None;
-        Area::new(Id::new("messages"))
+        Area::new(Id::unique("messages"))
             .anchor(Align2::LEFT_BOTTOM, Vec2::new(12.0, -bottom - 10.0))
             .order(Order::Foreground)
             .show(ctx, |ui| {

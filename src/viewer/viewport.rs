@@ -2,7 +2,7 @@
 
 use egui::{
     ColorImage, Event, Modifiers, MouseWheelUnit, PointerButton, Rect, Response, Sense,
-    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, WidgetType, pos2,
+    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, Role, pos2,
 };
 use std::sync::Arc;
 
@@ -101,8 +101,8 @@ pub enum ViewportClick {
 
 /// Senses the whole rectangle. Drawn first, so that whatever lies over it goes first.
 pub fn sense_ui(ui: &Ui, rect: Rect) -> Response {
-    let response = ui.interact(rect, egui::Id::new("viewport"), Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, "viewport"));
+    let response = ui.interact(rect, egui::Id::unique("viewport"), Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "viewport"));
     response
 }
 

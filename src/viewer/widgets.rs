@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{Align, Button, ComboBox, DragValue, Layout, Slider, Ui, Vec2, WidgetInfo, WidgetType};
+use egui::{Align, Button, ComboBox, DragValue, Layout, Slider, Ui, Vec2, WidgetInfo, Role};
 
 use super::theme;
 use crate::math::LinearRgb;
@@ -52,7 +52,7 @@ pub fn reset_ui<T: PartialEq + Clone>(ui: &mut Ui, name: &str, value: &mut T, or
     let button = Button::new("⟲").small().frame(false);
     let response = ui.add_visible(differs, button);
     let label = format!("Reset {name}");
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, differs, &label));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, differs, &label));
     if response.on_hover_text("As it was when opened").clicked() {
         *value = original.clone();
     }
@@ -221,7 +221,7 @@ pub fn text_ui(ui: &mut Ui, name: &str, hint: &str, text: &mut String) -> egui::
             .hint_text(hint)
             .desired_width(f32::INFINITY);
         let response = ui.add(edit);
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::TextEdit, true, name));
+        response.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, name));
         response
     })
 }
@@ -229,6 +229,6 @@ pub fn text_ui(ui: &mut Ui, name: &str, hint: &str, text: &mut String) -> egui::
 /// A small button whose name says more than its face.
 pub fn named_button_ui(ui: &mut Ui, face: &str, name: &str) -> egui::Response {
     let response = ui.add(Button::new(face).small());
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, name));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
     response.on_hover_text(name)
 }

@@ -87,7 +87,7 @@ pub fn drop_hint_ui(ctx: &egui::Context, window: Rect) {
 
 /// Words in the middle of a darkened window.
 pub fn cover(ctx: &egui::Context, window: Rect, text: &str) {
-    let painter = ctx.layer_painter(LayerId::new(Order::Foreground, Id::new("cover")));
+    let painter = ctx.layer_painter(LayerId::new(Order::Foreground, Id::unique("cover")));
     painter.rect_filled(window, 0.0, Color32::from_black_alpha(170));
     let font = FontId::proportional(20.0);
     let center = window.center();

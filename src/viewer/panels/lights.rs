@@ -108,7 +108,7 @@ fn light_ui(ui: &mut Ui, light: &mut Light, original: Option<&Light>, speed: f64
                 let response = ui.checkbox(&mut light.enabled, "");
                 response.widget_info(|| {
                     egui::WidgetInfo::selected(
-                        egui::WidgetType::Checkbox,
+                        egui::Role::CheckBox,
                         true,
                         light.enabled,
                         label("on"),

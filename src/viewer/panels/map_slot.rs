@@ -152,7 +152,7 @@ impl SlotEditor<'_> {
         let on = self.slot.enabled;
         let response = ui.checkbox(&mut self.slot.enabled, "");
         response.widget_info(|| {
-            egui::WidgetInfo::selected(egui::WidgetType::Checkbox, true, on, &label)
+            egui::WidgetInfo::selected(egui::Role::CheckBox, true, on, &label)
         });
         let mut action = None;
         if named_button_ui(ui, "×", &self.label("remove")).clicked() {
@@ -184,7 +184,7 @@ impl SlotEditor<'_> {
                 let response = ui.checkbox(value, text);
                 let on = *value;
                 response.widget_info(|| {
-                    egui::WidgetInfo::selected(egui::WidgetType::Checkbox, true, on, name)
+                    egui::WidgetInfo::selected(egui::Role::CheckBox, true, on, name)
                 });
             };
             if scalar {

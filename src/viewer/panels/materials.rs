@@ -48,7 +48,7 @@ fn list_ui(ui: &mut Ui, materials: &[Material], selected: &mut usize) {
                 let name = format!("Material {}", material.name);
                 response.widget_info(|| {
                     egui::WidgetInfo::selected(
-                        egui::WidgetType::SelectableLabel,
+                        egui::Role::Button,
                         true,
                         *selected == i,
                         &name,

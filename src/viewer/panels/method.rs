@@ -59,7 +59,7 @@ fn buttons_ui(ui: &mut Ui, chosen: &mut Method) {
                 let response = ui.add_sized(size, button);
                 response.widget_info(|| {
                     egui::WidgetInfo::selected(
-                        egui::WidgetType::Button,
+                        egui::Role::Button,
                         true,
                         *chosen == method,
                         info.label,

@@ -20,6 +20,8 @@ use super::document::Document;
 use super::preferences::Preferences;
 use super::theme;
 
+pub(super) use display::MOST_STOPS;
+
 /// Width of the panel's content, points; less in windows that it would fill.
 const WIDTH: f32 = 316.0;
 /// Distance from the window's edge, points.
@@ -79,7 +81,7 @@ pub struct PanelContext<'a> {
 pub fn panel_ui(ctx: &egui::Context, window: Rect, bottom: f32, panel: &mut PanelContext<'_>) {
     let width = WIDTH.min(window.width() * 0.55 - 2.0 * MARGIN).max(160.0);
     let height = (window.height() - bottom - 2.0 * MARGIN - 22.0).max(80.0);
-    Area::new(Id::new("panel"))
+    Area::new(Id::unique("panel"))
         .anchor(Align2::RIGHT_TOP, Vec2::new(-MARGIN, MARGIN))
         .order(Order::Middle)
         .constrain(false)
