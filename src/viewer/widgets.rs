@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{Align, Button, ComboBox, DragValue, Layout, Slider, Ui, Vec2, WidgetInfo, Role};
+use egui::{Align, Button, ComboBox, DragValue, Layout, Role, Slider, Ui, Vec2, WidgetInfo};
 
 use super::theme;
 use crate::math::LinearRgb;
