@@ -4,11 +4,13 @@
 //! when the model was loaded (see [`Normalization`]).
 
 mod aabb;
+mod bundle;
 pub mod bvh;
 mod lanes;
 mod mesh;
 mod normalization;
 mod ray;
+pub mod simd;
 mod slabs;
 pub mod triangle;
 

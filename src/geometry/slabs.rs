@@ -5,13 +5,13 @@ use glam::{Vec3, Vec3A};
 use super::Ray;
 
 /// Relative widening of every box: `16·2⁻²⁴`, see [`RaySlabs`].
-const PADDING: f32 = 16.0 * (f32::EPSILON * 0.5);
+pub(super) const PADDING: f32 = 16.0 * (f32::EPSILON * 0.5);
 
 /// Smallest magnitude of a direction component in box tests: `2⁻³²`.
 ///
 /// Keeps the reciprocal finite, so that an axis-parallel ray never meets `0·∞`. The ray bends by less
 /// than `2⁻³⁰` of the distance it can travel, a sixty-fourth of one rounding.
-const MIN_COMPONENT: f32 = 1.0 / 4_294_967_296.0;
+pub(super) const MIN_COMPONENT: f32 = 1.0 / 4_294_967_296.0;
 
 /// The three slab tests of one ray: `t = plane·inv_dir − shift` on each axis.
 ///

@@ -13,6 +13,7 @@ use super::{Ray, RaySlabs};
 
 pub use textbook::{MollerTrumbore, ReportEdges};
 pub use watertight::Watertight;
+pub(super) use watertight::{Axis, edge, inside_in_f64, meet_plane, sheared};
 
 /// Number of triangles that are tested together.
 pub const LANES: usize = 8;
@@ -33,6 +34,9 @@ pub struct TriangleHit {
 
 /// A ray prepared for one kind of triangle test. Triangles are two-sided.
 pub trait TriangleTest: Sized {
+    /// Whether bundles of rays are tested with the vector twin of [`Watertight`].
+    const HAS_BUNDLES: bool = false;
+
     /// Prepares a ray; done once per ray.
     fn new(ray: &Ray) -> Self;
 

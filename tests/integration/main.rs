@@ -4,6 +4,7 @@
 
 mod answers;
 mod built_in;
+mod bundles;
 mod bvh;
 mod cli;
 mod golden;

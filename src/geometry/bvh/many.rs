@@ -1,14 +1,26 @@
 //! Many rays at once: what the stages of a tile call.
+//!
+//! Neighbours that run alike are traced as a bundle (`bundle`), the others one by one (`single`). The
+//! answers are the same, bit for bit.
 
+use super::query::{AnyLanes, ClosestLanes, LaneQuery};
+use super::stack::Stack;
 use super::{Bvh, HitFilter};
-use crate::geometry::triangle::TriangleTest;
+use crate::geometry::bundle::{Bundle, Floats, Hull, Lanes, RAYS, RaySet};
+use crate::geometry::simd::{Kernel, Simd, SimdBase, SimdMask};
+use crate::geometry::triangle::{Axis, TriangleTest};
 use crate::geometry::{Hit, Ray};
+
+/// Fewer rays than this are traced one by one.
+const MIN_RAYS: u32 = 8;
+/// Neighbours are halved down to this many to find some that run alike.
+const MIN_WIDTH: usize = 16;
 
 impl Bvh {
     /// [`Self::intersect`] for each ray, into `hits`.
     ///
-    /// Rays that start together and run alike should be neighbours. How they are grouped never shows in
-    /// the answers.
+    /// Rays that start together and run alike should be neighbours, best in blocks of 8 × 8 pixels. How
+    /// they are grouped never shows in the answers.
     ///
     /// # Panics
     /// If the three slices differ in length.
@@ -20,8 +32,17 @@ impl Bvh {
         hits: &mut [Option<Hit>],
     ) {
         assert!(rays.len() == t_max.len() && rays.len() == hits.len());
-        for ((ray, &t_max), hit) in rays.iter().zip(t_max).zip(hits) {
-            *hit = self.intersect::<T, F>(ray, t_max, filter);
+        let many = Many {
+            bvh: self,
+            rays,
+            t_max,
+            query: ClosestLanes::new(filter),
+            answers: &mut *hits,
+        };
+        if !(T::HAS_BUNDLES && self.level.run(many)) {
+            for ((ray, &t_max), hit) in rays.iter().zip(t_max).zip(hits) {
+                *hit = self.intersect::<T, F>(ray, t_max, filter);
+            }
         }
     }
 
@@ -37,8 +58,120 @@ impl Bvh {
         occluded: &mut [bool],
     ) {
         assert!(rays.len() == t_max.len() && rays.len() == occluded.len());
-        for ((ray, &t_max), occluded) in rays.iter().zip(t_max).zip(occluded) {
-            *occluded = self.occluded::<T, F>(ray, t_max, filter);
+        let many = Many {
+            bvh: self,
+            rays,
+            t_max,
+            query: AnyLanes::new(filter),
+            answers: &mut *occluded,
+        };
+        if !(T::HAS_BUNDLES && self.level.run(many)) {
+            for ((ray, &t_max), occluded) in rays.iter().zip(t_max).zip(occluded) {
+                *occluded = self.occluded::<T, F>(ray, t_max, filter);
+            }
         }
     }
+}
+
+/// The work of one call.
+struct Many<'a, Q: LaneQuery> {
+    bvh: &'a Bvh,
+    rays: &'a [Ray],
+    t_max: &'a [f32],
+    query: Q,
+    answers: &'a mut [Q::Answer],
+}
+
+impl<Q: LaneQuery> Kernel for Many<'_, Q> {
+    #[inline(always)]
+    fn run<S: Simd>(mut self, simd: S) {
+        let (mut bundle, mut stack) = (Bundle::new(), Stack::new());
+        let mut t_max = Lanes::splat(0.0);
+        for first in (0..self.rays.len()).step_by(RAYS) {
+            let end = self.rays.len().min(first + RAYS);
+            bundle.load(&self.rays[first..end]);
+            t_max.0[..end - first].copy_from_slice(&self.t_max[first..end]);
+            let all = RaySet::MAX >> (RAYS - (end - first));
+            let hopeful = all & above_zero(simd, &t_max);
+            let mut left = all;
+            let axes = bundle.by_axis(simd, self.bvh.reach);
+            for (along, axis) in [Axis::X, Axis::Y, Axis::Z].into_iter().zip(axes) {
+                // Halved until what is together is narrow.
+                let (mut width, mut at) = (RAYS, 0);
+                while at < RAYS && axis & hopeful & left != 0 {
+                    let set = axis & hopeful & (RaySet::MAX >> (RAYS - width) << at);
+                    if set.count_ones() < MIN_RAYS {
+                        at += width;
+                    } else if bundle.is_narrow(simd, set) {
+                        let hull = bundle.prepare(simd, set, along, self.bvh.reach);
+                        self.query.start(simd, set, &t_max);
+                        self.trace(simd, first, (&bundle, &hull, set), &mut stack);
+                        left &= !set;
+                        at += width;
+                    } else if width > MIN_WIDTH {
+                        width /= 2;
+                    } else {
+                        at += width;
+                    }
+                }
+            }
+            self.trace_alone(first, left);
+        }
+    }
+}
+
+impl<Q: LaneQuery> Many<'_, Q> {
+    /// Traces the rays of `set` together, places counted from `first`.
+    #[inline(always)]
+    fn trace<S: Simd>(
+        &mut self,
+        simd: S,
+        first: usize,
+        (bundle, hull, set): (&Bundle, &Hull, RaySet),
+        stack: &mut Stack,
+    ) {
+        let done = self
+            .bvh
+            .traverse_bundle(simd, bundle, hull, stack, &mut self.query);
+        let answers = &mut self.answers[first..];
+        if done {
+            for (lane, answer) in answers.iter_mut().take(RAYS).enumerate() {
+                if set >> lane & 1 != 0 {
+                    *answer = self.query.answer(lane);
+                }
+            }
+        } else {
+            for lane in lanes(set) {
+                answers[lane] = self.query.resume(self.bvh, lane, &self.rays[first + lane]);
+            }
+        }
+    }
+
+    /// Traces the rays of `set` one by one.
+    fn trace_alone(&mut self, first: usize, set: RaySet) {
+        for ray in lanes(set).map(|lane| first + lane) {
+            self.answers[ray] = self.query.alone(self.bvh, &self.rays[ray], self.t_max[ray]);
+        }
+    }
+}
+
+/// Which numbers are above 0; not NaN.
+#[inline(always)]
+fn above_zero<S: Simd>(simd: S, floats: &Floats) -> RaySet {
+    let zero = S::f32s::splat(simd, 0.0);
+    let mut set = 0;
+    for group in 0..RAYS / S::f32s::LEN {
+        let above = floats.load(simd, group).simd_gt(zero).to_bitmask();
+        set |= above << (group * S::f32s::LEN);
+    }
+    set
+}
+
+/// The places of the rays in a set.
+fn lanes(mut set: RaySet) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = set.trailing_zeros() as usize;
+        set &= set.wrapping_sub(1);
+        (lane < RAYS).then_some(lane)
+    })
 }

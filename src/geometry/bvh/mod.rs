@@ -4,21 +4,25 @@
 //! - `collapse`: from two children per node to eight
 //! - `node`: what lies in memory
 //! - `single`: one ray at a time, closest hit and any hit
-//! - `many`: a tile's worth of rays; the door for packet kernels
+//! - `many`: a tile's worth of rays; what runs alike goes as a bundle
+//! - `bundle`, `query`: a bundle's path through the tree, and what its rays have found
 //! - `validate`, `stats`: is the tree right, is it good
 //!
 //! A tree never changes an answer: whatever its shape, it reports the triangle, `t`, `u` and `v` that
 //! testing every triangle would, bit for bit (see [`RaySlabs`](super::RaySlabs)).
 
 mod build;
+mod bundle;
 mod collapse;
 mod many;
 mod node;
+mod query;
 mod single;
 mod stack;
 mod stats;
 mod validate;
 
+use super::simd::{SimdLevel, UnsupportedLevel, simd_level};
 use super::{Aabb, TriangleMesh};
 use node::{Block, ChildRef, Node};
 
@@ -37,6 +41,7 @@ pub struct Bvh {
     /// Largest magnitude of a coordinate; see [`RaySlabs::new`](super::RaySlabs::new).
     reach: f32,
     triangles: usize,
+    level: SimdLevel,
 }
 
 impl Bvh {
@@ -64,7 +69,20 @@ impl Bvh {
             bounds,
             reach,
             triangles: mesh.len(),
+            level: simd_level(),
         }
+    }
+
+    /// Has bundles traced with the instructions of `level`. Changes no answer.
+    ///
+    /// # Errors
+    /// If this machine lacks them.
+    pub fn with_level(mut self, level: SimdLevel) -> Result<Self, UnsupportedLevel> {
+        if !level.is_available() {
+            return Err(UnsupportedLevel(level));
+        }
+        self.level = level;
+        Ok(self)
     }
 
     /// Box around all triangles; empty for an empty mesh.

@@ -11,6 +11,8 @@ use crate::geometry::{Hit, Ray, RaySlabs};
 /// Any `Fn(prim, u, v) -> bool` will do; `u` and `v` weigh the second and third vertex. It must be a pure
 /// function, because a traversal may ask for hits that turn out not to be the closest, in any order.
 pub trait HitFilter {
+    /// Whether it accepts everything, so that it need not be asked.
+    const ACCEPTS_ALL: bool = false;
     /// Whether the surface is there.
     fn accept(&self, prim: u32, u: f32, v: f32) -> bool;
 }
@@ -27,6 +29,8 @@ impl<F: Fn(u32, f32, f32) -> bool> HitFilter for F {
 pub struct AcceptAll;
 
 impl HitFilter for AcceptAll {
+    const ACCEPTS_ALL: bool = true;
+
     #[inline(always)]
     fn accept(&self, _prim: u32, _u: f32, _v: f32) -> bool {
         true
@@ -67,7 +71,7 @@ impl Bvh {
 
     /// Offers the search what it may want, roughly from front to back; says whether it stopped early.
     #[inline(always)]
-    fn traverse<T: TriangleTest>(&self, ray: &Ray, search: &mut impl Search) -> bool {
+    pub(super) fn traverse<T: TriangleTest>(&self, ray: &Ray, search: &mut impl Search) -> bool {
         let (test, slabs) = (T::new(ray), RaySlabs::new(ray, self.reach));
         let mut stack = Stack::new();
         let mut next = self.root;
@@ -104,7 +108,7 @@ impl Bvh {
 }
 
 /// What a traversal is for.
-trait Search {
+pub(super) trait Search {
     /// Boxes that begin beyond this distance are of no interest.
     fn limit(&self) -> f32;
     /// Considers a hit; `true` ends the search.
@@ -130,11 +134,11 @@ impl<F: HitFilter> Search for Any<'_, F> {
 }
 
 /// Keeps the closest hit that counts.
-struct Closest<'a, F> {
+pub(super) struct Closest<'a, F> {
     /// Its distance; before the first hit, the end of the search.
-    limit: f32,
-    hit: Option<Hit>,
-    filter: &'a F,
+    pub(super) limit: f32,
+    pub(super) hit: Option<Hit>,
+    pub(super) filter: &'a F,
 }
 
 impl<F: HitFilter> Search for Closest<'_, F> {
@@ -172,7 +176,7 @@ impl Entry {
 
 /// Returns the nearest of the hit children and pushes the others, the farthest first.
 #[inline(always)]
-fn push_sorted(
+pub(super) fn push_sorted(
     stack: &mut Stack,
     node: &Node,
     mut mask: u32,

@@ -33,6 +33,13 @@ impl Stack {
         }
     }
 
+    /// Empties it.
+    #[inline(always)]
+    pub(super) fn clear(&mut self) {
+        self.len = 0;
+        self.spilled.clear();
+    }
+
     #[inline(always)]
     pub(super) fn push(&mut self, entry: Entry) {
         if let Some(slot) = self.entries.get_mut(self.len) {

@@ -1,6 +1,6 @@
 //! The watertight test of Woop, Benthin and Wald.
 
-use std::ops::{Mul, Sub};
+use std::ops::{Add, Div, Mul, Sub};
 
 use glam::Vec3;
 
@@ -11,10 +11,10 @@ use crate::geometry::{Ray, RaySlabs};
 
 /// A coordinate axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Axis {
-    X,
-    Y,
-    Z,
+pub(in crate::geometry) enum Axis {
+    X = 0,
+    Y = 1,
+    Z = 2,
 }
 
 /// Watertight test: a ray through a closed mesh cannot slip between two triangles.
@@ -51,7 +51,7 @@ pub struct Watertight {
 impl Axis {
     /// Axis of the largest component.
     #[inline(always)]
-    fn of_largest(v: Vec3) -> Self {
+    pub(in crate::geometry) fn of_largest(v: Vec3) -> Self {
         let [x, y, z] = v.abs().to_array();
         if x > y && x > z {
             Self::X
@@ -64,7 +64,7 @@ impl Axis {
 
     /// Turns the axes round until this one is the last.
     #[inline(always)]
-    fn last<T>(self, [x, y, z]: [T; 3]) -> [T; 3] {
+    pub(in crate::geometry) fn last<T>(self, [x, y, z]: [T; 3]) -> [T; 3] {
         match self {
             Self::X => [y, z, x],
             Self::Y => [z, x, y],
@@ -73,15 +73,22 @@ impl Axis {
     }
 }
 
-/// One sheared coordinate. This and [`edge`] are all the arithmetic that decides inside.
+/// One sheared coordinate. This and [`edge`] are all the arithmetic that decides inside, for one ray
+/// and for the lanes of many.
 #[inline(always)]
-fn sheared<T: Copy + Mul<Output = T> + Sub<Output = T>>(p: T, origin: T, shear: T, z: T) -> T {
+pub(in crate::geometry) fn sheared<T>(p: T, origin: T, shear: T, z: T) -> T
+where
+    T: Mul<Output = T> + Sub<Output = T>,
+{
     (p - origin) - shear * z
 }
 
 /// Twice the signed area that the origin spans with the edge from `p` to `q`.
 #[inline(always)]
-fn edge<T: Mul<Output = T> + Sub<Output = T>>([px, py]: [T; 2], [qx, qy]: [T; 2]) -> T {
+pub(in crate::geometry) fn edge<T>([px, py]: [T; 2], [qx, qy]: [T; 2]) -> T
+where
+    T: Mul<Output = T> + Sub<Output = T>,
+{
     px * qy - py * qx
 }
 
@@ -95,26 +102,49 @@ fn same_side(e: [f64; 3]) -> bool {
 ///
 /// A triangle without area seen from the ray is outside: its neighbours cover the place.
 #[cold]
-fn inside_in_f64(corners: [[f32; 2]; 3]) -> bool {
+pub(in crate::geometry) fn inside_in_f64(corners: [[f32; 2]; 3]) -> bool {
     let [a, b, c] = corners.map(|corner| corner.map(f64::from));
     let e = [edge(c, b), edge(a, c), edge(b, a)];
     same_side(e) && e != [0.0; 3]
 }
 
-/// `t`, `u`, `v` where the ray meets the plane; NaN or infinite if it is parallel.
+/// `t`, `u`, `v` where a ray meets the plane of a triangle, given as its first corner and the two edges
+/// from there; NaN or infinite if it is parallel. For one ray or for the lanes of many.
 #[inline(always)]
-fn meet_plane(ray: &Ray, corners: &[Vec3; 3]) -> [f64; 3] {
-    let [a, b, c] = corners.map(|p| p.as_dvec3());
-    let (origin, dir) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
-    let (ab, ac, from_a) = (b - a, c - a, origin - a);
-    let p = dir.cross(ac);
-    let q = from_a.cross(ab);
-    let inv_det = 1.0 / ab.dot(p);
+pub(in crate::geometry) fn meet_plane<T>(
+    [ox, oy, oz]: [T; 3],
+    dir: [T; 3],
+    [[ax, ay, az], ab, ac]: [[T; 3]; 3],
+    one: T,
+) -> [T; 3]
+where
+    T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Div<Output = T>,
+{
+    let from_a = [ox - ax, oy - ay, oz - az];
+    let p = cross(dir, ac);
+    let q = cross(from_a, ab);
+    let inv_det = one / dot(ab, p);
     [
-        ac.dot(q) * inv_det,
-        from_a.dot(p) * inv_det,
-        dir.dot(q) * inv_det,
+        dot(ac, q) * inv_det,
+        dot(from_a, p) * inv_det,
+        dot(dir, q) * inv_det,
     ]
+}
+
+#[inline(always)]
+fn dot<T>([ax, ay, az]: [T; 3], [bx, by, bz]: [T; 3]) -> T
+where
+    T: Add<Output = T> + Mul<Output = T>,
+{
+    ax * bx + ay * by + az * bz
+}
+
+#[inline(always)]
+fn cross<T>([ax, ay, az]: [T; 3], [bx, by, bz]: [T; 3]) -> [T; 3]
+where
+    T: Copy + Sub<Output = T> + Mul<Output = T>,
+{
+    [ay * bz - by * az, az * bx - bz * ax, ax * by - bx * ay]
 }
 
 impl Watertight {
@@ -165,7 +195,11 @@ impl Watertight {
     fn locate(&self, slabs: &RaySlabs, corners: &[Vec3; 3]) -> Option<TriangleHit> {
         let [p0, p1, p2] = *corners;
         let (near, far) = slabs.interval(p0.min(p1).min(p2), p0.max(p1).max(p2));
-        let [t, u, v] = meet_plane(&self.ray, corners).map(|x| x as f32);
+        let [a, b, c] = corners.map(|p| p.as_dvec3());
+        let triangle = [a, b - a, c - a].map(|p| p.to_array());
+        let origin = self.ray.origin.as_dvec3().to_array();
+        let dir = self.ray.dir.as_dvec3().to_array();
+        let [t, u, v] = meet_plane(origin, dir, triangle, 1.0).map(|x| x as f32);
         // NaN, of a parallel ray, becomes the near end and weights of 0.
         let t = smaller(larger(t, near), far);
         let u = smaller(larger(u, 0.0), 1.0);
@@ -175,6 +209,8 @@ impl Watertight {
 }
 
 impl TriangleTest for Watertight {
+    const HAS_BUNDLES: bool = true;
+
     #[inline]
     fn new(ray: &Ray) -> Self {
         let along = Axis::of_largest(ray.dir);

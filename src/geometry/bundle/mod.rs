@@ -1,0 +1,239 @@
+//! Up to 64 rays side by side: what the bundle kernels work on.
+//!
+//! - `hull`: an interval around all rays, tested against eight boxes at a time
+//! - `watertight`: one triangle against all rays
+//!
+//! Both are the vector twins of [`RaySlabs`](super::RaySlabs) and
+//! [`Watertight`](super::triangle::Watertight): the same operations in the same order on each lane, so
+//! the bits are the same. Generic over the level of [`simd`](super::simd).
+
+mod hull;
+mod watertight;
+
+use std::ops::Range;
+
+use super::Ray;
+use super::simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
+use super::slabs::{MIN_COMPONENT, PADDING};
+use super::triangle::Axis;
+
+pub(super) use hull::{Boxes, Hull};
+pub(super) use watertight::{LaneHits, TriangleLanes};
+
+/// Most rays in a bundle: an 8 × 8 block of pixels.
+pub(super) const RAYS: usize = 64;
+
+/// How far the directions of a bundle may be apart on each axis.
+const MAX_SPREAD: f32 = 0.25;
+/// Coordinates that neither overflow nor vanish in the arithmetic of a bundle.
+const MAGNITUDES: Range<f32> = 1e-15..1e15;
+
+/// A number for each ray.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct Lanes<T>(pub(super) [T; RAYS]);
+
+/// A float for each ray.
+pub(super) type Floats = Lanes<f32>;
+
+impl<T: Copy> Lanes<T> {
+    /// The same for all.
+    pub(super) const fn splat(x: T) -> Self {
+        Self([x; RAYS])
+    }
+
+    /// The part of a group: `width` neighbours. Both must fit.
+    #[inline(always)]
+    pub(super) fn group(&self, group: usize, width: usize) -> &[T] {
+        // The remainder changes nothing; it lets the compiler see that the slice fits.
+        let first = group * width % RAYS;
+        &self.0[first..first + width]
+    }
+
+    /// [`Self::group`], to write to.
+    #[inline(always)]
+    pub(super) fn group_mut(&mut self, group: usize, width: usize) -> &mut [T] {
+        let first = group * width % RAYS;
+        &mut self.0[first..first + width]
+    }
+}
+
+impl Floats {
+    #[inline(always)]
+    pub(super) fn load<S: Simd>(&self, simd: S, group: usize) -> S::f32s {
+        S::f32s::from_slice(simd, self.group(group, S::f32s::LEN))
+    }
+
+    #[inline(always)]
+    pub(super) fn store<S: Simd>(&mut self, group: usize, x: S::f32s) {
+        x.store_slice(self.group_mut(group, S::f32s::LEN));
+    }
+}
+
+/// One vector from each of three arrays.
+#[inline(always)]
+fn load3<S: Simd>(simd: S, [x, y, z]: [&Floats; 3], group: usize) -> [S::f32s; 3] {
+    [
+        x.load(simd, group),
+        y.load(simd, group),
+        z.load(simd, group),
+    ]
+}
+
+/// A set of rays: bit `i` stands for ray `i`.
+pub(super) type RaySet = u64;
+
+/// Groups of native width, from that of the first ray of a set to that of the last.
+#[inline(always)]
+fn groups_of<S: Simd>(set: RaySet) -> Range<usize> {
+    let last = 63_u32.saturating_sub(set.leading_zeros()) as usize;
+    set.trailing_zeros() as usize / S::f32s::LEN..last / S::f32s::LEN + 1
+}
+
+/// The lanes of a group that are in a set.
+#[inline(always)]
+pub(super) fn lanes_of<S: Simd>(simd: S, set: RaySet, group: usize) -> S::mask32s {
+    S::mask32s::from_bitmask(simd, set >> (group * S::f32s::LEN % RAYS))
+}
+
+/// Up to 64 neighbouring rays, and those of them that are traced together prepared for box and triangle
+/// tests.
+pub(super) struct Bundle {
+    /// The rays that are traced together; never empty when prepared.
+    active: RaySet,
+    /// Their dominant axis.
+    along: Axis,
+    origin: [Floats; 3],
+    dir: [Floats; 3],
+    inv_dir: [Floats; 3],
+    near_shift: [Floats; 3],
+    far_shift: [Floats; 3],
+    shear: [Floats; 2],
+}
+
+impl Bundle {
+    /// No rays.
+    pub(super) const fn new() -> Self {
+        const ZEROS: [Floats; 3] = [Lanes::splat(0.0); 3];
+        Self {
+            active: 0,
+            along: Axis::Z,
+            origin: ZEROS,
+            dir: ZEROS,
+            inv_dir: ZEROS,
+            near_shift: ZEROS,
+            far_shift: ZEROS,
+            shear: [Lanes::splat(0.0); 2],
+        }
+    }
+
+    /// Number of rays that are traced together.
+    #[inline(always)]
+    pub(super) const fn count(&self) -> usize {
+        self.active.count_ones() as usize
+    }
+
+    /// Groups of native width, from that of the first active ray to that of the last.
+    #[inline(always)]
+    pub(super) fn groups<S: Simd>(&self) -> Range<usize> {
+        groups_of::<S>(self.active)
+    }
+
+    /// Takes up to 64 rays. Lanes beyond keep what they held.
+    #[inline(always)]
+    pub(super) fn load(&mut self, rays: &[Ray]) {
+        let [ox, oy, oz] = &mut self.origin;
+        let [dx, dy, dz] = &mut self.dir;
+        for (lane, ray) in rays.iter().take(RAYS).enumerate() {
+            (ox.0[lane], oy.0[lane], oz.0[lane]) = ray.origin.into();
+            (dx.0[lane], dy.0[lane], dz.0[lane]) = ray.dir.into();
+        }
+    }
+
+    /// Sorts the rays by dominant axis, as [`Axis::of_largest`] does. Rays that are not of unit length,
+    /// or of a scale at which the bounds of a [`Hull`] are not proven, are in no set.
+    #[inline(always)]
+    pub(super) fn by_axis<S: Simd>(&self, simd: S, reach: f32) -> [RaySet; 3] {
+        let mut sets = [0; 3];
+        let splat = |x| S::f32s::splat(simd, x);
+        for group in 0..RAYS / S::f32s::LEN {
+            let [x, y, z] = load3(simd, self.dir.each_ref(), group);
+            let squared = x * x + y * y + z * z;
+            let is_unit = squared.simd_gt(splat(0.5)) & squared.simd_lt(splat(2.0));
+            let [ox, oy, oz] = load3(simd, self.origin.each_ref(), group);
+            // Summed, so that NaN anywhere is NaN.
+            let magnitude = ox.abs() + oy.abs() + oz.abs() + reach;
+            let is_usual = magnitude.simd_gt(splat(MAGNITUDES.start))
+                & magnitude.simd_lt(splat(MAGNITUDES.end))
+                & is_unit;
+            let (x, y, z) = (x.abs(), y.abs(), z.abs());
+            let along_x = x.simd_gt(y) & x.simd_gt(z);
+            let along_y = !along_x & y.simd_gt(z);
+            let along = [along_x, along_y, !(along_x | along_y)];
+            for (set, along) in sets.iter_mut().zip(along) {
+                *set |= (along & is_usual).to_bitmask() << (group * S::f32s::LEN);
+            }
+        }
+        sets
+    }
+
+    /// Whether the directions of the rays in `set` are close together.
+    #[inline(always)]
+    pub(super) fn is_narrow<S: Simd>(&self, simd: S, set: RaySet) -> bool {
+        let splat = |x| S::f32s::splat(simd, x);
+        let (mut least, mut most) = ([splat(2.0); 3], [splat(-2.0); 3]);
+        for group in groups_of::<S>(set) {
+            let in_set = lanes_of(simd, set, group);
+            for axis in 0..3 {
+                let dir = self.dir[axis].load(simd, group);
+                least[axis] = least[axis].min(in_set.select(dir, splat(2.0)));
+                most[axis] = most[axis].max(in_set.select(dir, splat(-2.0)));
+            }
+        }
+        let mut is_narrow = true;
+        for axis in 0..3 {
+            is_narrow &= most[axis].reduce_max() - least[axis].reduce_min() < MAX_SPREAD;
+        }
+        is_narrow
+    }
+
+    /// Prepares those rays for being traced together that are in `set`, which is not empty, all dominated
+    /// by `along`: like [`RaySlabs::new`](super::RaySlabs::new) and
+    /// [`Watertight`](super::triangle::Watertight).
+    #[inline(always)]
+    pub(super) fn prepare<S: Simd>(
+        &mut self,
+        simd: S,
+        set: RaySet,
+        along: Axis,
+        reach: f32,
+    ) -> Hull {
+        (self.active, self.along) = (set, along);
+        let mut extremes = hull::Extremes::new(simd);
+        for group in self.groups::<S>() {
+            let origin = load3(simd, self.origin.each_ref(), group);
+            let [ox, oy, oz] = origin;
+            let farthest = ox.abs().max(oy.abs()).max(oz.abs());
+            let padding = (farthest + reach) * PADDING;
+            let mut inv_dir = origin;
+            for axis in 0..3 {
+                let dir = self.dir[axis].load(simd, group);
+                let smallest = S::f32s::splat(simd, MIN_COMPONENT);
+                let is_small = dir.abs().simd_lt(smallest);
+                let component = is_small.select(smallest.copysign(dir), dir);
+                let inv = S::f32s::splat(simd, 1.0) / component;
+                let at_origin = origin[axis] * inv;
+                let margin = inv.abs() * padding;
+                self.inv_dir[axis].store::<S>(group, inv);
+                self.near_shift[axis].store::<S>(group, at_origin + margin);
+                self.far_shift[axis].store::<S>(group, at_origin - margin);
+                inv_dir[axis] = inv;
+            }
+            let [dx, dy, dz] = load3(simd, along.last(self.dir.each_ref()), group);
+            self.shear[0].store::<S>(group, dx / dz);
+            self.shear[1].store::<S>(group, dy / dz);
+            extremes.add(lanes_of(simd, set, group), origin, inv_dir);
+        }
+        extremes.hull(self, reach)
+    }
+}

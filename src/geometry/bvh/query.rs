@@ -1,0 +1,205 @@
+//! What the rays of a bundle have found: the vector twins of the searches in `single`.
+
+use super::bundle::Query;
+use super::single::Closest;
+use super::{Bvh, HitFilter};
+use crate::geometry::bundle::{Floats, LaneHits, Lanes, RAYS, RaySet, lanes_of};
+use crate::geometry::simd::{Select, Simd, SimdBase, SimdMask};
+use crate::geometry::triangle::Watertight;
+use crate::geometry::{Hit, Ray};
+
+/// The limit of a lane without a ray, and of a ray that is done.
+const DONE: f32 = -1.0;
+
+/// A [`Query`] that can be asked for each ray.
+pub(super) trait LaneQuery: Query {
+    /// What is asked.
+    type Answer: Copy;
+    /// Forgets all rays and takes those in `set`, which end at `t_max`.
+    fn start<S: Simd>(&mut self, simd: S, set: RaySet, t_max: &Floats);
+    /// What came of a ray.
+    fn answer(&self, lane: usize) -> Self::Answer;
+    /// What comes of a ray whose bundle was given up on the way.
+    fn resume(&self, bvh: &Bvh, lane: usize, ray: &Ray) -> Self::Answer;
+    /// What comes of a ray in no bundle.
+    fn alone(&self, bvh: &Bvh, ray: &Ray, t_max: f32) -> Self::Answer;
+}
+
+/// Any hit.
+pub(super) struct AnyLanes<'a, F> {
+    limits: Floats,
+    filter: &'a F,
+}
+
+impl<'a, F: HitFilter> AnyLanes<'a, F> {
+    pub(super) const fn new(filter: &'a F) -> Self {
+        Self {
+            limits: Lanes::splat(DONE),
+            filter,
+        }
+    }
+}
+
+impl<F: HitFilter> Query for AnyLanes<'_, F> {
+    #[inline(always)]
+    fn limits(&self) -> &Floats {
+        &self.limits
+    }
+
+    #[inline(always)]
+    fn offer<S: Simd>(&mut self, simd: S, group: usize, prim: u32, hits: LaneHits<S>) {
+        let limits = self.limits.load(simd, group);
+        let counts = hits.mask & hits.t.simd_lt(limits);
+        let counts = accepted(simd, self.filter, prim, counts, &hits);
+        let limits = counts.select(S::f32s::splat(simd, DONE), limits);
+        self.limits.store::<S>(group, limits);
+    }
+}
+
+impl<F: HitFilter> LaneQuery for AnyLanes<'_, F> {
+    type Answer = bool;
+
+    #[inline(always)]
+    fn start<S: Simd>(&mut self, simd: S, set: RaySet, t_max: &Floats) {
+        start(simd, set, t_max, &mut self.limits);
+    }
+
+    #[inline(always)]
+    fn answer(&self, lane: usize) -> bool {
+        self.limits.0[lane] == DONE
+    }
+
+    #[inline(always)]
+    fn resume(&self, bvh: &Bvh, lane: usize, ray: &Ray) -> bool {
+        self.answer(lane) || self.alone(bvh, ray, self.limits.0[lane])
+    }
+
+    #[inline(always)]
+    fn alone(&self, bvh: &Bvh, ray: &Ray, t_max: f32) -> bool {
+        bvh.occluded::<Watertight, _>(ray, t_max, self.filter)
+    }
+}
+
+/// The closest hits.
+pub(super) struct ClosestLanes<'a, F> {
+    limits: Floats,
+    u: Floats,
+    v: Floats,
+    /// 0 before the first hit, so that nothing wins a tie against the end of the ray.
+    prims: Lanes<u32>,
+    /// Bit `lane`: there was a hit, and the limit is its distance.
+    found: u64,
+    filter: &'a F,
+}
+
+impl<'a, F: HitFilter> ClosestLanes<'a, F> {
+    pub(super) const fn new(filter: &'a F) -> Self {
+        Self {
+            limits: Lanes::splat(DONE),
+            u: Lanes::splat(0.0),
+            v: Lanes::splat(0.0),
+            prims: Lanes::splat(0),
+            found: 0,
+            filter,
+        }
+    }
+}
+
+impl<F: HitFilter> Query for ClosestLanes<'_, F> {
+    #[inline(always)]
+    fn limits(&self) -> &Floats {
+        &self.limits
+    }
+
+    #[inline(always)]
+    fn offer<S: Simd>(&mut self, simd: S, group: usize, prim: u32, hits: LaneHits<S>) {
+        let width = S::f32s::LEN;
+        let limits = self.limits.load(simd, group);
+        let prims = S::u32s::from_slice(simd, self.prims.group(group, width));
+        let this = S::u32s::splat(simd, prim);
+        let wins_tie = hits.t.simd_eq(limits) & this.simd_lt(prims);
+        let wins = hits.mask & (hits.t.simd_lt(limits) | wins_tie);
+        let wins = accepted(simd, self.filter, prim, wins, &hits);
+        self.limits.store::<S>(group, wins.select(hits.t, limits));
+        let u = self.u.load(simd, group);
+        self.u.store::<S>(group, wins.select(hits.u, u));
+        let v = self.v.load(simd, group);
+        self.v.store::<S>(group, wins.select(hits.v, v));
+        wins.select(this, prims)
+            .store_slice(self.prims.group_mut(group, width));
+        self.found |= wins.to_bitmask() << (group * width);
+    }
+}
+
+impl<F: HitFilter> LaneQuery for ClosestLanes<'_, F> {
+    type Answer = Option<Hit>;
+
+    #[inline(always)]
+    fn start<S: Simd>(&mut self, simd: S, set: RaySet, t_max: &Floats) {
+        start(simd, set, t_max, &mut self.limits);
+        self.prims = Lanes::splat(0);
+        self.found = 0;
+    }
+
+    #[inline(always)]
+    fn answer(&self, lane: usize) -> Option<Hit> {
+        (self.found >> lane & 1 != 0).then(|| Hit {
+            t: self.limits.0[lane],
+            prim: self.prims.0[lane],
+            sub: 0,
+            u: self.u.0[lane],
+            v: self.v.0[lane],
+        })
+    }
+
+    #[inline(always)]
+    fn resume(&self, bvh: &Bvh, lane: usize, ray: &Ray) -> Option<Hit> {
+        let mut search = Closest {
+            limit: self.limits.0[lane],
+            hit: self.answer(lane),
+            filter: self.filter,
+        };
+        bvh.traverse::<Watertight>(ray, &mut search);
+        search.hit
+    }
+
+    #[inline(always)]
+    fn alone(&self, bvh: &Bvh, ray: &Ray, t_max: f32) -> Option<Hit> {
+        bvh.intersect::<Watertight, _>(ray, t_max, self.filter)
+    }
+}
+
+/// Sets the limits of the rays in `set`; the others are done.
+#[inline(always)]
+fn start<S: Simd>(simd: S, set: RaySet, t_max: &Floats, limits: &mut Floats) {
+    let done = S::f32s::splat(simd, DONE);
+    for group in 0..RAYS / S::f32s::LEN {
+        let limit = lanes_of(simd, set, group).select(t_max.load(simd, group), done);
+        limits.store::<S>(group, limit);
+    }
+}
+
+/// Those of the candidates that the filter accepts.
+#[inline(always)]
+fn accepted<S: Simd, F: HitFilter>(
+    simd: S,
+    filter: &F,
+    prim: u32,
+    candidates: S::mask32s,
+    hits: &LaneHits<S>,
+) -> S::mask32s {
+    if F::ACCEPTS_ALL {
+        return candidates;
+    }
+    let (u, v) = (hits.u.as_slice(), hits.v.as_slice());
+    let mut mask = candidates.to_bitmask();
+    let mut left = mask;
+    while left != 0 {
+        let lane = left.trailing_zeros() as usize;
+        left &= left - 1;
+        if !filter.accept(prim, u[lane], v[lane]) {
+            mask &= !(1 << lane);
+        }
+    }
+    S::mask32s::from_bitmask(simd, mask)
+}

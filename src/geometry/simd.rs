@@ -1,0 +1,141 @@
+//! Which vector instructions the bundle kernels use: the one door to `fearless_simd`.
+
+use std::fmt;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use fearless_simd::{Level, dispatch};
+
+pub(super) use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8};
+pub(super) use fearless_simd::{SimdNarrow, SimdWiden};
+
+/// A set of vector instructions. All give the same bits; they differ in speed alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum SimdLevel {
+    /// One ray at a time: the plain kernel that the others are measured against.
+    Scalar,
+    /// Four lanes, on any x86-64.
+    Sse2,
+    /// Four lanes, with the instructions of 2008.
+    Sse42,
+    /// Eight lanes.
+    Avx2,
+    /// Sixteen lanes, on processors from Ice Lake and Zen 4 on.
+    Avx512,
+    /// Four lanes, on any 64-bit ARM.
+    Neon,
+}
+
+/// A level that this machine lacks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("this machine does not have {0}")]
+pub struct UnsupportedLevel(pub SimdLevel);
+
+/// What [`force_level`] chose: its place in [`SimdLevel::ALL`], or [`NOT_FORCED`].
+static FORCED: AtomicU8 = AtomicU8::new(NOT_FORCED);
+const NOT_FORCED: u8 = u8::MAX;
+
+/// The level of trees built from now on: the forced one, otherwise the best of this machine.
+#[must_use]
+pub fn simd_level() -> SimdLevel {
+    let forced = SimdLevel::ALL.get(usize::from(FORCED.load(Ordering::Relaxed)));
+    forced.copied().unwrap_or_else(SimdLevel::best)
+}
+
+/// Chooses the level of all trees that this process builds from now on; for comparisons.
+///
+/// # Errors
+/// If this machine lacks it; then nothing changes.
+pub fn force_level(level: SimdLevel) -> Result<(), UnsupportedLevel> {
+    if !level.is_available() {
+        return Err(UnsupportedLevel(level));
+    }
+    FORCED.store(level as u8, Ordering::Relaxed);
+    Ok(())
+}
+
+impl SimdLevel {
+    /// All levels of all machines.
+    pub const ALL: [Self; 6] = [
+        Self::Scalar,
+        Self::Sse2,
+        Self::Sse42,
+        Self::Avx2,
+        Self::Avx512,
+        Self::Neon,
+    ];
+
+    /// The fastest that this machine has.
+    #[must_use]
+    pub fn best() -> Self {
+        let available = Self::ALL
+            .into_iter()
+            .rev()
+            .find(|level| level.is_available());
+        available.unwrap_or(Self::Scalar)
+    }
+
+    /// Whether this machine has it.
+    #[must_use]
+    pub fn is_available(self) -> bool {
+        self == Self::Scalar || self.token().is_some()
+    }
+
+    /// Runs a kernel compiled for this level; `false` if there is none, as for [`Self::Scalar`].
+    #[inline]
+    pub(super) fn run(self, kernel: impl Kernel) -> bool {
+        let Some(token) = self.token() else {
+            return false;
+        };
+        dispatch!(token, simd => kernel.run(simd));
+        true
+    }
+
+    /// The proof that the processor has the instructions.
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    fn token(self) -> Option<Level> {
+        let best = Level::new();
+        match self {
+            Self::Scalar | Self::Neon => None,
+            Self::Sse2 => best.as_sse2().map(Level::Sse2),
+            Self::Sse42 => best.as_sse4_2().map(Level::Sse4_2),
+            Self::Avx2 => best.as_avx2().map(Level::Avx2),
+            Self::Avx512 => best.as_avx512().map(Level::Avx512),
+        }
+    }
+
+    /// The proof that the processor has the instructions.
+    #[cfg(target_arch = "aarch64")]
+    fn token(self) -> Option<Level> {
+        (self == Self::Neon)
+            .then(|| Level::new().as_neon().map(Level::Neon))
+            .flatten()
+    }
+
+    /// Elsewhere there is only the plain kernel.
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
+    fn token(self) -> Option<Level> {
+        None
+    }
+}
+
+impl fmt::Display for SimdLevel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Scalar => "scalar",
+            Self::Sse2 => "sse2",
+            Self::Sse42 => "sse4.2",
+            Self::Avx2 => "avx2",
+            Self::Avx512 => "avx512",
+            Self::Neon => "neon",
+        })
+    }
+}
+
+/// Code that is compiled once for each level.
+///
+/// Everything that `run` calls with a [`Simd`] must be `#[inline(always)]` and free of closures over
+/// vectors: a function that is left standing alone is compiled without the level's instructions.
+pub(super) trait Kernel {
+    /// The work.
+    fn run<S: Simd>(self, simd: S);
+}
