@@ -1,8 +1,8 @@
 //! Lights as markers in the picture, to be dragged.
 
 use egui::{
-    Color32, CursorIcon, Painter, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo,
-    Role, vec2,
+    Color32, CursorIcon, Painter, Pos2, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo,
+    vec2,
 };
 use glam::{DQuat, DVec3};
 

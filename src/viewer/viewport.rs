@@ -1,8 +1,8 @@
 //! The picture fills the window; the mouse moves the camera in it.
 
 use egui::{
-    ColorImage, Event, Modifiers, MouseWheelUnit, PointerButton, Rect, Response, Sense,
-    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, Role, pos2,
+    ColorImage, Event, Modifiers, MouseWheelUnit, PointerButton, Rect, Response, Role, Sense,
+    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2,
 };
 use std::sync::Arc;
 

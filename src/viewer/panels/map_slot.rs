@@ -151,9 +151,7 @@ impl SlotEditor<'_> {
         let label = self.label("on");
         let on = self.slot.enabled;
         let response = ui.checkbox(&mut self.slot.enabled, "");
-        response.widget_info(|| {
-            egui::WidgetInfo::selected(egui::Role::CheckBox, true, on, &label)
-        });
+        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, on, &label));
         let mut action = None;
         if named_button_ui(ui, "×", &self.label("remove")).clicked() {
             action = Some(SlotAction::Remove);

@@ -47,12 +47,7 @@ fn list_ui(ui: &mut Ui, materials: &[Material], selected: &mut usize) {
                 let response = ui.add(button);
                 let name = format!("Material {}", material.name);
                 response.widget_info(|| {
-                    egui::WidgetInfo::selected(
-                        egui::Role::Button,
-                        true,
-                        *selected == i,
-                        &name,
-                    )
+                    egui::WidgetInfo::selected(egui::Role::Button, true, *selected == i, &name)
                 });
                 if response.clicked() {
                     *selected = i;
