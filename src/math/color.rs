@@ -117,8 +117,8 @@ pub fn linear_from_srgb(c: f32) -> f32 {
 /// Encodes one linear channel; values outside `[0, 1]` are clamped, NaN becomes 0.
 #[must_use]
 pub fn srgb_from_linear(c: f32) -> f32 {
-    // max first: f32::max drops a NaN.
-    let c = c.max(0.0).min(1.0);
+    // Written so that NaN becomes 0.
+    let c = if c > 0.0 { c.min(1.0) } else { 0.0 };
     if c <= 0.003_130_8 {
         c * 12.92
     } else {
@@ -185,7 +185,7 @@ impl SrgbEncoder {
     #[must_use]
     pub fn encode(&self, c: LinearRgb) -> [u8; 3] {
         c.to_array().map(|x| {
-            let x = x.max(0.0).min(1.0);
+            let x = if x > 0.0 { x.min(1.0) } else { 0.0 };
             let bucket = x.to_bits().saturating_sub(FIRST_BUCKET_BITS) >> BUCKET_SHIFT;
             let byte = self.buckets[bucket as usize];
             // A bucket is narrower than a step of the encoding, so at most one threshold lies in it.

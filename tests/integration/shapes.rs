@@ -42,7 +42,7 @@ impl Random {
         let z = self.unit() * 2.0 - 1.0;
         let (sin, cos) = (self.unit() * TAU).sin_cos();
         let r = (1.0 - z * z).sqrt();
-        Vec3::new(r * cos, r * sin, z).normalize()
+        Vec3::new(r * cos, r * sin, z).normalize_or_zero()
     }
 
     /// A positive or negative unit axis, with zeros of either sign.
@@ -131,7 +131,7 @@ pub fn sphere(n: u32) -> TriangleMesh {
         key[(face + 1) % 3] = 2 * x as i32 - n;
         key[(face + 2) % 3] = 2 * y as i32 - n;
         *shared.entry(key).or_insert_with(|| {
-            positions.push(Vec3::from_array(key.map(|k| k as f32)).normalize());
+            positions.push(Vec3::from_array(key.map(|k| k as f32)).normalize_or_zero());
             positions.len() as u32 - 1
         })
     };
