@@ -5,13 +5,14 @@
 //! - `loader`, `dialogs`: files, on threads of their own
 //! - `document`: what is open, and undo
 //! - `viewport`, `picking`, `light_markers`: the mouse in the picture
-//! - `panels`, `status`, `windows`, `toasts`, `widgets`, `theme`: what is drawn over it
+//! - `panels`, `status`, `windows`, `toasts`, `widgets`, `color_edit`, `theme`: what is drawn over it
 //! - `commands`: the table behind keys, menu and help
 //!
 //! Settings travel back by cost: panels edit three plain structs in place (display, render, source), and
 //! after them the app compares with what it last sent. There are no dirty flags and no callbacks.
 
 mod app;
+mod color_edit;
 pub mod commands;
 mod dialogs;
 pub mod document;

@@ -2,8 +2,12 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{Align, Button, ComboBox, DragValue, Layout, Role, Slider, Ui, Vec2, WidgetInfo};
+use egui::{
+    Align, Button, Color32, ComboBox, DragValue, Layout, Pos2, Role, Sense, Slider, Stroke, Ui,
+    Vec2, WidgetInfo,
+};
 
+use super::color_edit::color_edit_ui;
 use super::theme;
 use crate::math::LinearRgb;
 
@@ -48,13 +52,34 @@ pub fn row_ui<R>(ui: &mut Ui, caption: Caption<'_>, add: impl FnOnce(&mut Ui) ->
 
 /// A button that takes a value back to where it was when the scene was opened. Keeps its place when hidden.
 pub fn reset_ui<T: PartialEq + Clone>(ui: &mut Ui, name: &str, value: &mut T, original: &T) {
-    let differs = value != original;
-    let button = Button::new("⟲").small().frame(false);
-    let response = ui.add_visible(differs, button);
+    let side = 14.0;
+    if value == original {
+        ui.add_space(side + ui.spacing().item_spacing.x);
+        return;
+    }
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::click());
     let label = format!("Reset {name}");
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, differs, &label));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+    paint_reset(
+        ui,
+        rect.center(),
+        ui.style().interact(&response).fg_stroke.color,
+    );
     if response.on_hover_text("As it was when opened").clicked() {
         *value = original.clone();
+    }
+}
+
+/// An arrow that turns back; the fonts have none.
+fn paint_reset(ui: &Ui, center: Pos2, color: Color32) {
+    use std::f32::consts::TAU;
+    let (radius, stroke) = (4.2, Stroke::new(1.4, color));
+    let at = |turn: f32| center + Vec2::angled(TAU * turn) * radius;
+    let arc = (0..=16).map(|i| at(-0.45 + 0.78 * i as f32 / 16.0));
+    ui.painter().line(arc.collect(), stroke);
+    let tip = at(-0.45);
+    for barb in [Vec2::new(-0.5, -4.0), Vec2::new(4.0, -0.5)] {
+        ui.painter().line_segment([tip, tip + barb], stroke);
     }
 }
 
@@ -178,11 +203,8 @@ pub fn color_ui(
     original: Option<&LinearRgb>,
 ) {
     row_ui(ui, caption, |ui| {
-        let mut rgb = color.to_array();
-        if ui.color_edit_button_rgb(&mut rgb).changed() {
-            *color = rgb.into();
-        }
-        let [r, g, b] = rgb.map(|c| format!("{c:.2}"));
+        color_edit_ui(ui, caption.name, color);
+        let [r, g, b] = color.to_array().map(|c| format!("{c:.2}"));
         ui.label(
             egui::RichText::new(format!("{r} {g} {b}"))
                 .monospace()

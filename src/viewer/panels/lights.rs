@@ -83,7 +83,7 @@ fn new_point(camera: &Camera) -> LightKind {
     let axes = camera.axes();
     let depth = camera.distance() * 0.7;
     let height = 2.0 * depth * (camera.vfov * 0.5).tan();
-    let aside = axes.right * 0.1 + axes.up * 0.25;
+    let aside = axes.up * 0.25 - axes.right * 0.1;
     LightKind::Point {
         position: camera.eye + axes.forward * depth + aside * height,
         falloff: Falloff::InverseSquare,

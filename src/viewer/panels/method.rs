@@ -103,7 +103,9 @@ fn amplitude_ui(ui: &mut Ui, doc: &mut Document) {
                 .range(0.0..=f64::MAX)
                 .speed(usual * 0.01)
                 .max_decimals(6);
-            ui.add_sized([62.0, ui.spacing().interact_size.y], number)
+            let size = [62.0, ui.spacing().interact_size.y];
+            // Named before the hint: a hint would become the name of a control without one.
+            ui.name_inputs("Amplitude", |ui| ui.add_sized(size, number))
                 .on_hover_text("World units from stored height 0 to stored height 1");
             if value != before && value.is_finite() {
                 *amplitude = Some(value.max(0.0));

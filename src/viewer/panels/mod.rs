@@ -88,6 +88,8 @@ pub fn panel_ui(ctx: &egui::Context, window: Rect, bottom: f32, panel: &mut Pane
         .show(ctx, |ui| {
             theme::glass().show(ui, |ui| {
                 ui.set_width(width);
+                // The area would keep the height that its content had in the picture before.
+                ui.set_max_height(height);
                 header_ui(ui, panel);
                 ui.add_space(2.0);
                 ScrollArea::vertical()

@@ -2,7 +2,6 @@
 
 use egui::accesskit::Role;
 use glam::DVec3;
-use reliefscope::math::LinearRgb;
 use reliefscope::scene::ShadingModel;
 use reliefscope::shading::{Falloff, LightKind};
 use reliefscope::surface::mapping::{Derivative, Lookup, Method};
@@ -13,7 +12,7 @@ use super::driver::Driver;
 /// With a section opened by its title.
 fn with_section(title: &str) -> Driver {
     let mut driver = Driver::reference();
-    driver.button(title);
+    driver.section(title);
     driver
 }
 
@@ -158,7 +157,7 @@ fn the_map_slots() {
     driver.choose(&label(height, "channel"), "g");
     driver.check(&label(normal, "flip green"));
     driver.number(&label(normal, "baked amplitude"), 0.5);
-    driver.button(&label(height, "addressing"));
+    driver.section(&label(height, "addressing"));
     driver.choose(&label(height, "wrap"), "clamp");
     driver.number(&label(height, "scale u"), 3.0);
     driver.number(&label(height, "offset v"), 0.5);
@@ -207,11 +206,18 @@ fn the_shading_section() {
 #[test]
 fn a_colour_is_picked() {
     let mut driver = with_section("Shading");
-    driver.button("Background top");
-    // The picker's own fields; red goes up by a step.
-    let fields = driver.harness.root().children_recursive().count();
-    assert!(fields > 0);
-    assert_eq!(driver.settings().shading.background.top, LinearRgb::BLACK);
+    driver.click(Role::ColorWell, "Background top");
+    driver.number("Background top green", 0.5);
+    assert_eq!(driver.settings().shading.background.top.g, 0.5);
+    driver.click(Role::Slider, "Background top hue");
+    let top = driver.settings().shading.background.top;
+    assert!(
+        top.b > top.r && top.g > top.r,
+        "the middle of the track is cyan: {top:?}"
+    );
+    driver.click(Role::Slider, "Background top saturation");
+    driver.click(Role::Slider, "Background top brightness");
+    assert_ne!(driver.settings().shading.background.top, top);
 }
 
 #[test]

@@ -99,7 +99,7 @@ impl Driver {
         self.settings().camera
     }
 
-    pub fn node(&self, role: Role, label: &str) -> Node<'_> {
+    pub fn node<'a>(&'a self, role: Role, label: &'a str) -> Node<'a> {
         self.harness.get_by_role_and_label(role, label)
     }
 
@@ -115,6 +115,11 @@ impl Driver {
 
     pub fn button(&mut self, label: &str) {
         self.click(Role::Button, label);
+    }
+
+    /// Opens or closes a section of the panel.
+    pub fn section(&mut self, title: &str) {
+        self.click(Role::DisclosureTriangle, title);
     }
 
     pub fn check(&mut self, label: &str) {

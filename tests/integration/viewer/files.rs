@@ -59,13 +59,14 @@ fn a_broken_path_keeps_the_scene_and_says_why() {
             .any(|text| text.contains("missing/model.obj"))
     });
     assert_eq!(driver.doc().scene.name, before);
+    let is_it = |text: &&str| text.contains("missing/model.obj");
     let dismiss = driver
         .app()
         .messages()
-        .next()
+        .find(is_it)
         .map(|text| format!("Dismiss: {text}"));
     driver.button(&dismiss.expect("a message"));
-    assert_eq!(driver.app().messages().count(), 0);
+    assert_eq!(driver.app().messages().find(is_it), None);
 }
 
 #[test]
@@ -98,7 +99,7 @@ fn a_picture_is_saved() {
 #[test]
 fn a_picture_is_added_to_the_material_and_replaced() {
     let mut driver = Driver::reference();
-    driver.button("Materials");
+    driver.section("Materials");
     let count = driver.settings().materials[0].maps.len();
     // Known to the scene already: no second copy is kept.
     type_path(&mut driver, "Picture path", &reference("normal.png"));
@@ -118,7 +119,7 @@ fn a_picture_is_added_to_the_material_and_replaced() {
 #[test]
 fn a_broken_picture_is_refused_with_its_name() {
     let mut driver = Driver::reference();
-    driver.button("Materials");
+    driver.section("Materials");
     type_path(&mut driver, "Picture path", &reference("plane.obj"));
     driver.button("Add picture");
     driver.wait_until(|app| app.messages().any(|text| text.contains("plane.obj")));

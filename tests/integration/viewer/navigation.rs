@@ -88,7 +88,7 @@ fn double_click_sets_the_pivot_on_the_model() {
 #[test]
 fn h_hides_and_shows_the_panel() {
     let mut driver = Driver::reference();
-    driver.button("Lights");
+    driver.section("Lights");
     driver.button("Point");
     assert!(driver.has("Amplitude slider") && driver.has("Marker of point"));
     driver.key(Key::H);
@@ -186,7 +186,7 @@ fn undo_and_redo_leave_the_camera_alone() {
 #[test]
 fn a_point_light_is_dragged_across_and_along_the_view() {
     let mut driver = Driver::reference();
-    driver.button("Lights");
+    driver.section("Lights");
     driver.button("Point");
     let position = |driver: &Driver| match driver.settings().lights.last().map(|l| l.kind) {
         Some(LightKind::Point { position, .. }) => position,
