@@ -78,6 +78,7 @@ impl<T: Copy> Grid<T> {
     /// Where `st` falls: s to the right and t downwards, both 0…1 across the picture, texel centres at
     /// `(i + ½) / size`. Non-finite coordinates count as 0.
     #[must_use]
+    #[inline]
     pub fn cell(&self, st: Vec2, wrap: Wrap) -> BilinearCell {
         let (i0, i1, fx) = wrap.neighbours(st.x, self.width);
         let (j0, j1, fy) = wrap.neighbours(st.y, self.height);
@@ -97,12 +98,12 @@ impl Wrap {
         match self {
             // Taking off whole turns first is exact and keeps the fraction's precision.
             Self::Repeat => {
-                let x = (c - c.floor()) * n as f32 - 0.5;
-                let floor = x.floor();
-                let i = floor as i32;
+                let x = (c - floor(c)) * n as f32 - 0.5;
+                let below = floor(x);
+                let i = below as i32;
                 let i0 = if i < 0 { n - 1 } else { (i as u32).min(n - 1) };
                 let i1 = if i0 + 1 == n { 0 } else { i0 + 1 };
-                (i0, i1, x - floor)
+                (i0, i1, x - below)
             }
             Self::Clamp | Self::Mirror => {
                 let c = if self == Self::Clamp {
@@ -116,6 +117,18 @@ impl Wrap {
                 (self.index(i, n), self.index(i + 1, n), x - floor)
             }
         }
+    }
+}
+
+/// The largest whole number not above `x`, without a call into the C library on processors older than
+/// SSE 4.1, which is what a portable build is compiled for.
+fn floor(x: f32) -> f32 {
+    // From 2²³ on every float is whole.
+    if x.abs() < 8_388_608.0 {
+        let toward_zero = x as i32 as f32;
+        if toward_zero > x { toward_zero - 1.0 } else { toward_zero }
+    } else {
+        x
     }
 }
 
