@@ -1,6 +1,6 @@
 //! An interval around all rays of a bundle.
 
-use super::Bundle;
+use super::{Bundle, lanes_of};
 use crate::geometry::simd::{Select, Simd, SimdBase, SimdMask, f32x8};
 use crate::geometry::slabs::PADDING;
 use crate::geometry::triangle::LANES;
@@ -97,7 +97,7 @@ impl<S: Simd> Extremes<S> {
 
     /// The hull of all rays added, which are the active ones of `bundle`.
     #[inline(always)]
-    pub(super) fn hull(&self, bundle: &Bundle, reach: f32) -> Hull {
+    pub(super) fn hull(&self, simd: S, bundle: &Bundle, reach: f32) -> Hull {
         let [least, most] = least_and_most::<S>(&self.origin);
         let [mut inv_least, mut inv_most] = least_and_most::<S>(&self.inv_dir);
         let farthest = (0..3).fold(0.0_f32, |far, i| far.max(-least[i]).max(most[i]));
@@ -110,7 +110,7 @@ impl<S: Simd> Extremes<S> {
                 Course::Backward
             } else {
                 // Only those that run away from the box matter to where it is entered.
-                (inv_most[axis], inv_least[axis]) = closest_to_zero(bundle, axis);
+                (inv_most[axis], inv_least[axis]) = closest_to_zero(simd, bundle, axis);
                 Course::Mixed
             };
         }
@@ -141,16 +141,16 @@ fn least_and_most<S: Simd>([least, most]: &[[S::f32s; 3]; 2]) -> [[f32; 3]; 2] {
 }
 
 /// The largest of the negative and the smallest of the positive reciprocals on an axis.
-#[cold]
-fn closest_to_zero(bundle: &Bundle, axis: usize) -> (f32, f32) {
-    let (mut below, mut above) = (f32::MIN, f32::MAX);
-    let rays = bundle.inv_dir[axis].0.iter().enumerate();
-    for (_, &inv) in rays.filter(|(lane, _)| bundle.active >> lane & 1 != 0) {
-        if inv < 0.0 {
-            below = below.max(inv);
-        } else {
-            above = above.min(inv);
-        }
+#[inline(always)]
+fn closest_to_zero<S: Simd>(simd: S, bundle: &Bundle, axis: usize) -> (f32, f32) {
+    let zero = S::f32s::splat(simd, 0.0);
+    let lowest = S::f32s::splat(simd, f32::MIN);
+    let (mut below, mut above) = (lowest, -lowest);
+    for group in bundle.groups::<S>() {
+        let inv = bundle.inv_dir[axis].load(simd, group);
+        let lanes = lanes_of(simd, bundle.active, group);
+        below = (lanes & inv.simd_lt(zero)).select(below.max(inv), below);
+        above = (lanes & inv.simd_gt(zero)).select(above.min(inv), above);
     }
-    (below, above)
+    (below.reduce_max(), above.reduce_min())
 }

@@ -24,7 +24,9 @@ pub(super) use watertight::{LaneHits, TriangleLanes};
 pub(super) const RAYS: usize = 64;
 
 /// How far the directions of a bundle may be apart on each axis.
-const MAX_SPREAD: f32 = 0.25;
+const MAX_DIR_SPREAD: f32 = 0.25;
+/// How far its origins may be apart on each axis, in sizes of the scene.
+const MAX_ORIGIN_SPREAD: f32 = 0.125;
 /// Coordinates that neither overflow nor vanish in the arithmetic of a bundle.
 const MAGNITUDES: Range<f32> = 1e-15..1e15;
 
@@ -94,6 +96,19 @@ fn groups_of<S: Simd>(set: RaySet) -> Range<usize> {
 #[inline(always)]
 pub(super) fn lanes_of<S: Simd>(simd: S, set: RaySet, group: usize) -> S::mask32s {
     S::mask32s::from_bitmask(simd, set >> (group * S::f32s::LEN % RAYS))
+}
+
+/// The smallest and the largest number in a set that is not empty.
+#[inline(always)]
+fn extremes<S: Simd>(simd: S, set: RaySet, floats: &Floats) -> (f32, f32) {
+    let infinite = S::f32s::splat(simd, f32::INFINITY);
+    let (mut least, mut most) = (infinite, -infinite);
+    for group in groups_of::<S>(set) {
+        let (x, in_set) = (floats.load(simd, group), lanes_of(simd, set, group));
+        least = in_set.select(least.min(x), least);
+        most = in_set.select(most.max(x), most);
+    }
+    (least.reduce_min(), most.reduce_max())
 }
 
 /// Up to 64 neighbouring rays, and those of them that are traced together prepared for box and triangle
@@ -177,24 +192,34 @@ impl Bundle {
         sets
     }
 
-    /// Whether the directions of the rays in `set` are close together.
+    /// A part of the rays in `set` that is more alike than all of them; `None` if all are alike enough.
+    ///
+    /// Cuts where they differ most, in origin or in direction: at depth edges, between two facets of a
+    /// mirror, between the end of one row of pixels and the beginning of the next. `size` is the scene's.
     #[inline(always)]
-    pub(super) fn is_narrow<S: Simd>(&self, simd: S, set: RaySet) -> bool {
-        let splat = |x| S::f32s::splat(simd, x);
-        let (mut least, mut most) = ([splat(2.0); 3], [splat(-2.0); 3]);
-        for group in groups_of::<S>(set) {
-            let in_set = lanes_of(simd, set, group);
-            for axis in 0..3 {
-                let dir = self.dir[axis].load(simd, group);
-                least[axis] = least[axis].min(in_set.select(dir, splat(2.0)));
-                most[axis] = most[axis].max(in_set.select(dir, splat(-2.0)));
+    pub(super) fn cut<S: Simd>(&self, simd: S, set: RaySet, size: f32) -> Option<RaySet> {
+        let (mut widest, mut at) = (1.0, None);
+        let kinds = [
+            (&self.dir, MAX_DIR_SPREAD),
+            (&self.origin, MAX_ORIGIN_SPREAD * size),
+        ];
+        for (coordinates, allowed) in kinds {
+            for coordinate in coordinates {
+                let (least, most) = extremes(simd, set, coordinate);
+                if most - least > widest * allowed {
+                    widest = (most - least) / allowed;
+                    at = Some((coordinate, least + (most - least) * 0.5));
+                }
             }
         }
-        let mut is_narrow = true;
-        for axis in 0..3 {
-            is_narrow &= most[axis].reduce_max() - least[axis].reduce_min() < MAX_SPREAD;
+        let (coordinate, middle) = at?;
+        let middle = S::f32s::splat(simd, middle);
+        let mut below = 0;
+        for group in groups_of::<S>(set) {
+            let is_below = coordinate.load(simd, group).simd_lt(middle);
+            below |= is_below.to_bitmask() << (group * S::f32s::LEN);
         }
-        is_narrow
+        Some(set & below)
     }
 
     /// Prepares those rays for being traced together that are in `set`, which is not empty, all dominated
@@ -234,6 +259,6 @@ impl Bundle {
             self.shear[1].store::<S>(group, dy / dz);
             extremes.add(lanes_of(simd, set, group), origin, inv_dir);
         }
-        extremes.hull(self, reach)
+        extremes.hull(simd, self, reach)
     }
 }

@@ -126,7 +126,7 @@ impl<S: Simd> TriangleLanes<S> {
         let simd = self.simd;
         let splat = |x| S::f32s::splat(simd, x);
         let (near, far) = self.interval(rays, group);
-        let [t, u, v] = self.meet_plane(rays, group);
+        let [t, u, v] = self.meet_plane(rays, group, mask);
         let (zero, one) = (splat(0.0), splat(1.0));
         let t = smaller(larger(t, near), far);
         let u = smaller(larger(u, zero), one);
@@ -152,9 +152,9 @@ impl<S: Simd> TriangleLanes<S> {
         (near, far)
     }
 
-    /// `t`, `u`, `v` by the scalar test's own [`meet_plane`], rounded.
+    /// `t`, `u`, `v` by the scalar test's own [`meet_plane`], rounded, for the rays in `mask`.
     #[inline(always)]
-    fn meet_plane(&self, rays: &Bundle, group: usize) -> [S::f32s; 3] {
+    fn meet_plane(&self, rays: &Bundle, group: usize, mask: u64) -> [S::f32s; 3] {
         let simd = self.simd;
         let splat = |x| S::f64s::splat(simd, x);
         let [a, b, c] = self.corners.map(|p| p.as_dvec3());
@@ -165,8 +165,14 @@ impl<S: Simd> TriangleLanes<S> {
         let (ox, oy, oz) = (ox.widen(), oy.widen(), oz.widen());
         let (dx, dy, dz) = (dx.widen(), dy.widen(), dz.widen());
         let one = splat(1.0);
-        let low = meet_plane([ox.0, oy.0, oz.0], [dx.0, dy.0, dz.0], triangle, one);
-        let high = meet_plane([ox.1, oy.1, oz.1], [dx.1, dy.1, dz.1], triangle, one);
+        let (mut low, mut high) = ([one; 3], [one; 3]);
+        let half = S::f64s::LEN;
+        if mask & ((1 << half) - 1) != 0 {
+            low = meet_plane([ox.0, oy.0, oz.0], [dx.0, dy.0, dz.0], triangle, one);
+        }
+        if mask >> half != 0 {
+            high = meet_plane([ox.1, oy.1, oz.1], [dx.1, dy.1, dz.1], triangle, one);
+        }
         [
             low[0].narrow(high[0]),
             low[1].narrow(high[1]),

@@ -17,7 +17,7 @@ pub(super) trait Query {
 }
 
 /// Triangles that a bundle may test for each of its rays before it is taken apart.
-const PATIENCE: usize = 16;
+const PATIENCE: usize = 6;
 
 impl Bvh {
     /// Offers the query what it may want, roughly from front to back.

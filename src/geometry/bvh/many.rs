@@ -13,8 +13,8 @@ use crate::geometry::{Hit, Ray};
 
 /// Fewer rays than this are traced one by one.
 const MIN_RAYS: u32 = 8;
-/// Neighbours are halved down to this many to find some that run alike.
-const MIN_WIDTH: usize = 16;
+/// How often 64 neighbours are cut to find some that run alike.
+const MAX_CUTS: u32 = 6;
 
 impl Bvh {
     /// [`Self::intersect`] for each ray, into `hits`.
@@ -92,35 +92,51 @@ impl<Q: LaneQuery> Kernel for Many<'_, Q> {
             bundle.load(&self.rays[first..end]);
             t_max.0[..end - first].copy_from_slice(&self.t_max[first..end]);
             let all = RaySet::MAX >> (RAYS - (end - first));
+            let (mut alone, mut cuts) = (all, MAX_CUTS);
+            let sets = bundle.by_axis(simd, self.bvh.reach);
             let hopeful = all & above_zero(simd, &t_max);
-            let mut left = all;
-            let axes = bundle.by_axis(simd, self.bvh.reach);
-            for (along, axis) in [Axis::X, Axis::Y, Axis::Z].into_iter().zip(axes) {
-                // Halved until what is together is narrow.
-                let (mut width, mut at) = (RAYS, 0);
-                while at < RAYS && axis & hopeful & left != 0 {
-                    let set = axis & hopeful & (RaySet::MAX >> (RAYS - width) << at);
-                    if set.count_ones() < MIN_RAYS {
-                        at += width;
-                    } else if bundle.is_narrow(simd, set) {
+            for (along, set) in [Axis::X, Axis::Y, Axis::Z].into_iter().zip(sets) {
+                let mut left = set & hopeful;
+                while left.count_ones() >= MIN_RAYS
+                    && let Some(set) = self.alike(simd, &bundle, left, &mut cuts)
+                {
+                    left &= !set;
+                    if set.count_ones() >= MIN_RAYS {
+                        alone &= !set;
                         let hull = bundle.prepare(simd, set, along, self.bvh.reach);
                         self.query.start(simd, set, &t_max);
                         self.trace(simd, first, (&bundle, &hull, set), &mut stack);
-                        left &= !set;
-                        at += width;
-                    } else if width > MIN_WIDTH {
-                        width /= 2;
-                    } else {
-                        at += width;
                     }
                 }
             }
-            self.trace_alone(first, left);
+            self.trace_alone(first, alone, &mut stack);
         }
     }
 }
 
 impl<Q: LaneQuery> Many<'_, Q> {
+    /// Some of the rays in `set` that run alike; `None` once `cuts` are used up.
+    #[inline(always)]
+    fn alike<S: Simd>(
+        &self,
+        simd: S,
+        bundle: &Bundle,
+        mut set: RaySet,
+        cuts: &mut u32,
+    ) -> Option<RaySet> {
+        // In a single leaf there is nothing to lose.
+        let has_ways = !self.bvh.nodes.is_empty();
+        let size = self.bvh.bounds.extent().max_element();
+        while has_ways
+            && set.count_ones() >= MIN_RAYS
+            && let Some(part) = bundle.cut(simd, set, size)
+        {
+            *cuts = cuts.checked_sub(1)?;
+            set = part;
+        }
+        Some(set)
+    }
+
     /// Traces the rays of `set` together, places counted from `first`.
     #[inline(always)]
     fn trace<S: Simd>(
@@ -130,9 +146,8 @@ impl<Q: LaneQuery> Many<'_, Q> {
         (bundle, hull, set): (&Bundle, &Hull, RaySet),
         stack: &mut Stack,
     ) {
-        let done = self
-            .bvh
-            .traverse_bundle(simd, bundle, hull, stack, &mut self.query);
+        let bvh = self.bvh;
+        let done = bvh.traverse_bundle(simd, bundle, hull, stack, &mut self.query);
         let answers = &mut self.answers[first..];
         if done {
             for (lane, answer) in answers.iter_mut().take(RAYS).enumerate() {
@@ -142,15 +157,18 @@ impl<Q: LaneQuery> Many<'_, Q> {
             }
         } else {
             for lane in lanes(set) {
-                answers[lane] = self.query.resume(self.bvh, lane, &self.rays[first + lane]);
+                let ray = &self.rays[first + lane];
+                answers[lane] = self.query.resume(bvh, stack, lane, ray);
             }
         }
     }
 
     /// Traces the rays of `set` one by one.
-    fn trace_alone(&mut self, first: usize, set: RaySet) {
+    #[inline(never)]
+    fn trace_alone(&mut self, first: usize, set: RaySet, stack: &mut Stack) {
         for ray in lanes(set).map(|lane| first + lane) {
-            self.answers[ray] = self.query.alone(self.bvh, &self.rays[ray], self.t_max[ray]);
+            let (t_max, at) = (self.t_max[ray], &self.rays[ray]);
+            self.answers[ray] = self.query.alone(self.bvh, stack, at, t_max);
         }
     }
 }

@@ -1,7 +1,8 @@
 //! What the rays of a bundle have found: the vector twins of the searches in `single`.
 
 use super::bundle::Query;
-use super::single::Closest;
+use super::single::{Any, Closest};
+use super::stack::Stack;
 use super::{Bvh, HitFilter};
 use crate::geometry::bundle::{Floats, LaneHits, Lanes, RAYS, RaySet, lanes_of};
 use crate::geometry::simd::{Select, Simd, SimdBase, SimdMask};
@@ -20,9 +21,9 @@ pub(super) trait LaneQuery: Query {
     /// What came of a ray.
     fn answer(&self, lane: usize) -> Self::Answer;
     /// What comes of a ray whose bundle was given up on the way.
-    fn resume(&self, bvh: &Bvh, lane: usize, ray: &Ray) -> Self::Answer;
+    fn resume(&self, bvh: &Bvh, stack: &mut Stack, lane: usize, ray: &Ray) -> Self::Answer;
     /// What comes of a ray in no bundle.
-    fn alone(&self, bvh: &Bvh, ray: &Ray, t_max: f32) -> Self::Answer;
+    fn alone(&self, bvh: &Bvh, stack: &mut Stack, ray: &Ray, t_max: f32) -> Self::Answer;
 }
 
 /// Any hit.
@@ -70,13 +71,14 @@ impl<F: HitFilter> LaneQuery for AnyLanes<'_, F> {
     }
 
     #[inline(always)]
-    fn resume(&self, bvh: &Bvh, lane: usize, ray: &Ray) -> bool {
-        self.answer(lane) || self.alone(bvh, ray, self.limits.0[lane])
+    fn resume(&self, bvh: &Bvh, stack: &mut Stack, lane: usize, ray: &Ray) -> bool {
+        self.answer(lane) || self.alone(bvh, stack, ray, self.limits.0[lane])
     }
 
     #[inline(always)]
-    fn alone(&self, bvh: &Bvh, ray: &Ray, t_max: f32) -> bool {
-        bvh.occluded::<Watertight, _>(ray, t_max, self.filter)
+    fn alone(&self, bvh: &Bvh, stack: &mut Stack, ray: &Ray, t_max: f32) -> bool {
+        let filter = self.filter;
+        bvh.traverse::<Watertight>(ray, stack, &mut Any { t_max, filter })
     }
 }
 
@@ -153,19 +155,21 @@ impl<F: HitFilter> LaneQuery for ClosestLanes<'_, F> {
     }
 
     #[inline(always)]
-    fn resume(&self, bvh: &Bvh, lane: usize, ray: &Ray) -> Option<Hit> {
+    fn resume(&self, bvh: &Bvh, stack: &mut Stack, lane: usize, ray: &Ray) -> Option<Hit> {
         let mut search = Closest {
             limit: self.limits.0[lane],
             hit: self.answer(lane),
             filter: self.filter,
         };
-        bvh.traverse::<Watertight>(ray, &mut search);
+        bvh.traverse::<Watertight>(ray, stack, &mut search);
         search.hit
     }
 
     #[inline(always)]
-    fn alone(&self, bvh: &Bvh, ray: &Ray, t_max: f32) -> Option<Hit> {
-        bvh.intersect::<Watertight, _>(ray, t_max, self.filter)
+    fn alone(&self, bvh: &Bvh, stack: &mut Stack, ray: &Ray, t_max: f32) -> Option<Hit> {
+        let mut search = Closest::new(t_max, self.filter);
+        bvh.traverse::<Watertight>(ray, stack, &mut search);
+        search.hit
     }
 }
 

@@ -1,7 +1,7 @@
 //! One ray at a time: closest hit and any hit.
 
 use super::Bvh;
-use super::node::{Child, ChildRef, Node};
+use super::node::{Block, Child, ChildRef, Node};
 use super::stack::{Entry, Stack};
 use crate::geometry::triangle::{LANES, TriangleHit, TriangleTest, take_lowest};
 use crate::geometry::{Hit, Ray, RaySlabs};
@@ -49,12 +49,8 @@ impl Bvh {
         t_max: f32,
         filter: &F,
     ) -> Option<Hit> {
-        let mut search = Closest {
-            limit: t_max,
-            hit: None,
-            filter,
-        };
-        self.traverse::<T>(ray, &mut search);
+        let mut search = Closest::new(t_max, filter);
+        self.traverse_alone::<T>(ray, &mut search);
         search.hit
     }
 
@@ -66,31 +62,46 @@ impl Bvh {
         t_max: f32,
         filter: &F,
     ) -> bool {
-        self.traverse::<T>(ray, &mut Any { t_max, filter })
+        self.traverse_alone::<T>(ray, &mut Any { t_max, filter })
+    }
+
+    /// [`Self::traverse`] with a stack of its own, which a tree of one leaf does not need.
+    #[inline(always)]
+    fn traverse_alone<T: TriangleTest>(&self, ray: &Ray, search: &mut impl Search) -> bool {
+        if self.nodes.is_empty() {
+            let (test, slabs) = (T::new(ray), RaySlabs::new(ray, self.reach));
+            self.blocks
+                .first()
+                .is_some_and(|block| visit_block(block, &test, &slabs, search))
+        } else {
+            self.traverse::<T>(ray, &mut Stack::new(), search)
+        }
     }
 
     /// Offers the search what it may want, roughly from front to back; says whether it stopped early.
     #[inline(always)]
-    pub(super) fn traverse<T: TriangleTest>(&self, ray: &Ray, search: &mut impl Search) -> bool {
+    pub(super) fn traverse<T: TriangleTest>(
+        &self,
+        ray: &Ray,
+        stack: &mut Stack,
+        search: &mut impl Search,
+    ) -> bool {
         let (test, slabs) = (T::new(ray), RaySlabs::new(ray, self.reach));
-        let mut stack = Stack::new();
+        stack.clear();
         let mut next = self.root;
         loop {
             match next.unpack() {
                 Child::Node(index) => {
                     let node = &self.nodes[index];
                     let (mask, near) = node.hit_lanes(&slabs, search.limit());
-                    if let Some(child) = push_sorted(&mut stack, node, mask, &near) {
+                    if let Some(child) = push_sorted(stack, node, mask, &near) {
                         next = child;
                         continue;
                     }
                 }
                 Child::Block(index) => {
-                    let stop = self.blocks.get(index).is_some_and(|block| {
-                        test.intersect_block(&slabs, &block.corners, |lane, hit| {
-                            search.offer(block.prims[lane], hit)
-                        })
-                    });
+                    let block = self.blocks.get(index);
+                    let stop = block.is_some_and(|b| visit_block(b, &test, &slabs, search));
                     if stop {
                         return true;
                     }
@@ -107,6 +118,19 @@ impl Bvh {
     }
 }
 
+/// Offers the hits on a block's triangles; says whether the search is over.
+#[inline(always)]
+fn visit_block(
+    block: &Block,
+    test: &impl TriangleTest,
+    slabs: &RaySlabs,
+    search: &mut impl Search,
+) -> bool {
+    test.intersect_block(slabs, &block.corners, |lane, hit| {
+        search.offer(block.prims[lane], hit)
+    })
+}
+
 /// What a traversal is for.
 pub(super) trait Search {
     /// Boxes that begin beyond this distance are of no interest.
@@ -116,9 +140,9 @@ pub(super) trait Search {
 }
 
 /// Stops at the first hit that counts.
-struct Any<'a, F> {
-    t_max: f32,
-    filter: &'a F,
+pub(super) struct Any<'a, F> {
+    pub(super) t_max: f32,
+    pub(super) filter: &'a F,
 }
 
 impl<F: HitFilter> Search for Any<'_, F> {
@@ -139,6 +163,17 @@ pub(super) struct Closest<'a, F> {
     pub(super) limit: f32,
     pub(super) hit: Option<Hit>,
     pub(super) filter: &'a F,
+}
+
+impl<'a, F> Closest<'a, F> {
+    #[inline(always)]
+    pub(super) const fn new(t_max: f32, filter: &'a F) -> Self {
+        Self {
+            limit: t_max,
+            hit: None,
+            filter,
+        }
+    }
 }
 
 impl<F: HitFilter> Search for Closest<'_, F> {
