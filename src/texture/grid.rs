@@ -126,7 +126,11 @@ fn floor(x: f32) -> f32 {
     // From 2²³ on every float is whole.
     if x.abs() < 8_388_608.0 {
         let toward_zero = x as i32 as f32;
-        if toward_zero > x { toward_zero - 1.0 } else { toward_zero }
+        if toward_zero > x {
+            toward_zero - 1.0
+        } else {
+            toward_zero
+        }
     } else {
         x
     }
