@@ -38,6 +38,7 @@ pub(in crate::geometry) struct Hull {
 
 impl Hull {
     /// Which of eight boxes any ray may meet in `[0, limit]`, as bits, and the first distance at which.
+    #[expect(clippy::needless_range_loop, reason = "five arrays share the index")]
     #[inline(always)]
     pub(in crate::geometry) fn hit_lanes<S: Simd>(
         &self,
