@@ -51,10 +51,12 @@ pub struct ViewOptions {
 #[derive(Debug, thiserror::Error)]
 pub enum ViewError {
     /// There is nothing to show it on.
-    #[error("no display: neither DISPLAY nor WAYLAND_DISPLAY is set")]
+    #[error(
+        "no display: neither DISPLAY nor WAYLAND_DISPLAY is set; `reliefscope render` works without one"
+    )]
     NoDisplay,
     /// The window system refused.
-    #[error("no window could be opened: {0}")]
+    #[error("no window could be opened: {0}; `reliefscope render` works without one")]
     Window(String),
 }
 

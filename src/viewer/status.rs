@@ -190,13 +190,6 @@ fn item_ui(ui: &mut Ui, text: &str, color: Color32, hint: &str) {
 
 fn loading_ui(ui: &mut Ui, loading: Option<&(String, f32)>) -> bool {
     let Some((name, fraction)) = loading else {
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.label(
-                RichText::new("H panel   F1 keys")
-                    .small()
-                    .color(theme::WEAK),
-            );
-        });
         return false;
     };
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
