@@ -143,6 +143,23 @@ fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
         .unwrap_or_else(|| "the window system failed".into())
 }
 
+/// One line without the place in a library's source that some errors begin with.
 fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let after_place = line
+        .rsplit_once(".rs:")
+        .and_then(|(_, rest)| rest.split_once(": "));
+    after_place.map_or(line.clone(), |(_, cause)| cause.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::one_line;
+
+    #[test]
+    fn errors_of_the_window_system_fit_on_a_line() {
+        let long = "os error at lib/mod.rs:788: Failed to open\n  connection to X server";
+        assert_eq!(one_line(long), "Failed to open connection to X server");
+        assert_eq!(one_line("no\nGL"), "no GL");
+    }
 }

@@ -114,9 +114,12 @@ fn line_ui(ui: &mut Ui, status: &Status<'_>) -> bool {
     let stats = status.stats;
     // Room for what matters most first; a narrow window cuts the end off.
     let fps = status.shown_per_sec;
-    let text = RichText::new(format!("{fps:5.1} fps"))
-        .monospace()
-        .size(15.0);
+    let text = if fps > 0.0 {
+        format!("{fps:5.1} fps")
+    } else {
+        format!("{:>9}", "idle")
+    };
+    let text = RichText::new(text).monospace().size(15.0);
     ui.label(text.strong().color(Color32::WHITE))
         .on_hover_text("New pictures on the screen per second");
     item_ui(

@@ -164,6 +164,6 @@ fn sections_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
                 section_ui(ui, panel);
                 ui.add_space(6.0);
             });
-        ui.separator();
+        ui.add(egui::Separator::default().spacing(3.0));
     }
 }

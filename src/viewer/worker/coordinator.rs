@@ -29,6 +29,9 @@ const COARSEST: u32 = 8;
 /// Refinement shows its first samples as they come, later ones ten times a second: each shown frame costs
 /// an encoding and an upload that the refinement itself could use.
 const SHOW_EVERY: Duration = Duration::from_millis(100);
+/// How long a preview waits for the next edit before it is refined. In a drag edits come faster than this,
+/// and the window, too, needs the cores that refining would take.
+const REST: Duration = Duration::from_millis(25);
 /// Samples that are shown as they come.
 const FAST_SAMPLES: u32 = 4;
 
@@ -68,6 +71,8 @@ pub(super) struct Coordinator {
     stride: u32,
     passes: u64,
     shown_at: Option<Instant>,
+    /// Until then nothing is refined.
+    rest_until: Option<Instant>,
 }
 
 impl Coordinator {
@@ -82,6 +87,7 @@ impl Coordinator {
             stride: COARSEST,
             passes: 0,
             shown_at: None,
+            rest_until: None,
         }
     }
 
@@ -97,7 +103,7 @@ impl Coordinator {
     }
 
     /// Sleeps until there is something to do.
-    fn next_step(&self) -> Step {
+    fn next_step(&mut self) -> Step {
         let mut inbox = lock(&self.shared.inbox);
         loop {
             if self.shared.quit.load(Ordering::Acquire) {
@@ -108,6 +114,15 @@ impl Coordinator {
             }
             if self.has_sample() && !inbox.saves.is_empty() {
                 return Step::Save(inbox.saves.remove(0));
+            }
+            let rest = self.rest_until.map(|until| until - Instant::now());
+            match rest.filter(|rest| !rest.is_zero()) {
+                Some(rest) => {
+                    let bell = self.shared.bell.wait_timeout(inbox, rest);
+                    inbox = bell.unwrap_or_else(PoisonError::into_inner).0;
+                    continue;
+                }
+                None => self.rest_until = None,
             }
             if self.has_work() {
                 return Step::Render;
@@ -154,6 +169,7 @@ impl Coordinator {
             self.nanos_per_pixel = None;
             self.stride = COARSEST;
         }
+        self.rest_until = None;
         self.job = Some(Job {
             generation,
             request,
@@ -278,6 +294,7 @@ impl Coordinator {
         job.pass_rays = rays.saturating_sub(job.rays);
         job.rays = rays;
         job.pass_millis = took * 1e3;
+        self.rest_until = (before == 0 && stride > 1).then(|| Instant::now() + REST);
         if before != 1 {
             // Later samples say nothing about a first pass, whose hits may be cached.
             let nanos = took * 1e9 / pixels_of(job.request.snapshot.size, stride);
