@@ -60,17 +60,39 @@ pub fn centre_first(tiles: &[Tile], [width, height]: [u32; 2]) -> Vec<usize> {
 }
 
 impl Tile {
-    /// Mean of the samples of the pixel at `(x, y)` inside the tile. Before the first full sample the
-    /// nearest pixel of the preview stands for its neighbours.
-    pub(super) fn shown(&self, x: u32, y: u32) -> LinearRgb {
-        let at = |x: u32, y: u32| self.sums[(y * self.width + x) as usize];
+    /// Writes `f` of every pixel into `rows`, a band of picture rows `width` wide that starts at the tile's
+    /// first row: the mean of its samples, or before the first full sample the nearest pixel of the preview.
+    pub(super) fn write_rows<T: Copy>(
+        &self,
+        rows: &mut [T],
+        width: usize,
+        f: &impl Fn(LinearRgb) -> T,
+    ) {
         if self.samples > 0 {
-            return at(x, y) * (1.0 / self.samples as f32);
+            let share = 1.0 / self.samples as f32;
+            for (y, sums) in self.sums.chunks_exact(self.width as usize).enumerate() {
+                let start = y * width + self.x0 as usize;
+                for (pixel, &sum) in rows[start..].iter_mut().zip(sums) {
+                    *pixel = f(sum * share);
+                }
+            }
+            return;
         }
-        // Tiles start at multiples of every stride that divides their size, so the pixel to the upper
-        // left on the preview's grid is inside the tile.
-        self.first_stride.map_or(LinearRgb::BLACK, |stride| {
-            at(x - x % stride, y - y % stride)
-        })
+        // Tiles start at multiples of every stride that divides their size, so every pixel's stand-in, to
+        // its upper left on the preview's grid, is inside the tile.
+        let stride = self.first_stride.unwrap_or(TILE_SIZE) as usize;
+        let (tile_width, tile_height) = (self.width as usize, self.height as usize);
+        for y in (0..tile_height).step_by(stride) {
+            let start = y * width + self.x0 as usize;
+            for (cell, pixels) in rows[start..start + tile_width]
+                .chunks_mut(stride)
+                .enumerate()
+            {
+                pixels.fill(f(self.sums[y * tile_width + cell * stride]));
+            }
+            for copy in 1..stride.min(tile_height - y) {
+                rows.copy_within(start..start + tile_width, start + copy * width);
+            }
+        }
     }
 }

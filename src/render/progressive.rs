@@ -9,7 +9,7 @@ use super::film::{Picture, centre_first, tiles_of};
 use super::stages::Scratch;
 use super::tile::{TILE_SIZE, Tile};
 use super::{Counters, Frame};
-use crate::math::SrgbEncoder;
+use crate::math::{LinearRgb, SrgbEncoder};
 use crate::scene::{RenderSettings, Scene};
 use crate::texture::MapRole;
 
@@ -232,35 +232,21 @@ impl Progressive {
     }
 
     /// Fills `out` row by row with what `f` makes of every pixel.
-    fn for_each_row<T: Send>(&self, out: &mut [T], f: impl Fn(crate::math::LinearRgb) -> T + Sync) {
+    fn for_each_row<T: Copy + Send>(&self, out: &mut [T], f: impl Fn(LinearRgb) -> T + Sync) {
         let Some(snapshot) = &self.snapshot else {
             return;
         };
-        let [width, height] = snapshot.size;
-        assert_eq!(
-            out.len(),
-            width as usize * height as usize,
-            "one entry per pixel"
-        );
-        let columns = width.div_ceil(TILE_SIZE) as usize;
-        let band = width as usize * TILE_SIZE as usize;
+        let [width, height] = snapshot.size.map(|n| n as usize);
+        assert_eq!(out.len(), width * height, "one entry per pixel");
+        let columns = width.div_ceil(TILE_SIZE as usize);
+        let band = width * TILE_SIZE as usize;
         self.pool.install(|| {
-            out.par_chunks_mut(band)
-                .enumerate()
-                .for_each(|(tile_row, rows)| {
-                    for tile in &self.tiles[tile_row * columns..(tile_row + 1) * columns] {
-                        let tile = lock(tile);
-                        for y in 0..tile.height {
-                            let start = y as usize * width as usize + tile.x0 as usize;
-                            for (x, pixel) in rows[start..start + tile.width as usize]
-                                .iter_mut()
-                                .enumerate()
-                            {
-                                *pixel = f(tile.shown(x as u32, y));
-                            }
-                        }
-                    }
-                });
+            let bands = out.par_chunks_mut(band).zip(self.tiles.par_chunks(columns));
+            bands.for_each(|(rows, tiles)| {
+                tiles
+                    .iter()
+                    .for_each(|t| lock(t).write_rows(rows, width, &f))
+            });
         });
     }
 }

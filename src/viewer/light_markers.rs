@@ -144,24 +144,24 @@ fn draw(
     } else {
         Color32::from_black_alpha(200)
     };
-    let line = Stroke::new(if lit { 2.0 } else { 1.2 }, fill.gamma_multiply(0.8));
-    if let LightKind::Directional { .. } = light.kind {
-        if let Some(pivot) = projection.project(camera.target) {
-            arrow(painter, pos, pivot, line);
-        }
-    } else {
-        for k in 0..8 {
-            let direction = Vec2::angled(std::f32::consts::TAU * k as f32 / 8.0);
-            painter.line_segment(
-                [
-                    pos + direction * (DISC + 3.0),
-                    pos + direction * (DISC + 7.0),
-                ],
-                line,
-            );
+    let line = Stroke::new(if lit { 2.2 } else { 1.6 }, fill);
+    // A dark line under a light one shows on any picture.
+    let under = Stroke::new(line.width + 2.0, Color32::from_black_alpha(130));
+    for stroke in [under, line] {
+        match (light.kind, projection.project(camera.target)) {
+            (LightKind::Directional { .. }, Some(pivot)) => arrow(painter, pos, pivot, stroke),
+            _ => rays(painter, pos, stroke),
         }
     }
     painter.circle(pos, DISC, fill, Stroke::new(2.0, rim));
+}
+
+fn rays(painter: &Painter, pos: Pos2, stroke: Stroke) {
+    for k in 0..8 {
+        let direction = Vec2::angled(std::f32::consts::TAU * k as f32 / 8.0);
+        let ends = [DISC + 3.0, DISC + 7.0].map(|radius| pos + direction * radius);
+        painter.line_segment(ends, stroke);
+    }
 }
 
 /// From the marker half of the way to the pivot: the way the light travels.

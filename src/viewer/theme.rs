@@ -47,6 +47,8 @@ pub fn apply(ctx: &egui::Context) {
         style.spacing.combo_width = 110.0;
         style.spacing.slider_rail_height = 4.0;
         style.spacing.indent = 12.0;
+        // Room for the floating scroll bar beside what is scrolled.
+        style.spacing.scroll.floating_allocated_width = 7.0;
         style.animation_time = 0.08;
         style.interaction.selectable_labels = false;
         style.visuals = visuals();

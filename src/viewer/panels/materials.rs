@@ -30,7 +30,7 @@ pub(super) fn materials_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
 fn list_ui(ui: &mut Ui, materials: &[Material], selected: &mut usize) {
     ScrollArea::vertical()
         .id_salt("materials")
-        .max_height(112.0)
+        .max_height(136.0)
         .auto_shrink([false, true])
         .show(ui, |ui| {
             for (i, material) in materials.iter().enumerate() {
