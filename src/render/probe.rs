@@ -5,7 +5,7 @@ use std::fmt;
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 
-use super::stages::{Mirrors, Scratch, bounce, light, surface, trace};
+use super::stages::{self, Mirrors, Scratch, light, trace};
 use super::{Counters, Frame, Snapshot};
 use crate::geometry::triangle::Watertight;
 use crate::geometry::{Hit, OriginRule, Ray, offset_origin};
@@ -176,24 +176,14 @@ fn one_bounce(
     scratch: &mut Scratch,
 ) -> BounceStory {
     let counters = &mut Counters::default();
+    stages::trace_queue(frame, scratch, counters);
+    stages::shade_hits(frame, mirrors, scratch, counters);
     let Scratch {
         queue,
-        next,
-        t_max,
         hits,
         surfaces,
-        shadows,
-        radiance,
         ..
     } = scratch;
-    trace::closest_hits(frame, &queue.rays, t_max, hits, counters);
-    surface::mapped_surfaces(frame, queue, hits, surfaces, counters);
-    light::reflected_light(frame, mirrors, surfaces, shadows, counters);
-    bounce::gather(frame, mirrors, (queue, hits), surfaces, radiance);
-    next.clear();
-    if mirrors == Mirrors::Follow {
-        bounce::queue_mirrors(frame, queue, surfaces, next);
-    }
     let (ray, hit) = (queue.rays[0], hits[0]);
     let color = surfaces
         .reflected

@@ -1,7 +1,7 @@
 //! One tile: its share of the film, its cached hits, and the walk of its rays through the stages.
 
 use super::sampling::pixel_sample;
-use super::stages::{Mirrors, Scratch, bounce, light, surface, trace};
+use super::stages::{self, Mirrors, Scratch, trace};
 use super::{Counters, Frame};
 use crate::geometry::{Hit, Ray};
 use crate::math::LinearRgb;
@@ -161,10 +161,7 @@ impl Tile {
             self.first_hits(frame, &pixels, scratch, &mut counters);
         } else {
             counters.camera_rays += scratch.queue.rays.len() as u64;
-            let Scratch {
-                queue, t_max, hits, ..
-            } = &mut *scratch;
-            trace::closest_hits(frame, &queue.rays, t_max, hits, &mut counters);
+            stages::trace_queue(frame, scratch, &mut counters);
         }
         walk(frame, scratch, &mut counters);
         for (pixel, &sample) in pixels.iter().zip(&scratch.radiance) {
@@ -220,35 +217,19 @@ impl Tile {
 /// Walks the queue whose first hits are known through all bounces: a queue per bounce, no recursion.
 fn walk(frame: &Frame<'_>, scratch: &mut Scratch, counters: &mut Counters) {
     for bounce in 0..=frame.max_bounces {
-        let Scratch {
-            queue,
-            next,
-            t_max,
-            hits,
-            surfaces,
-            shadows,
-            radiance,
-            ..
-        } = &mut *scratch;
         let mirrors = if bounce == frame.max_bounces {
             Mirrors::End
         } else {
             Mirrors::Follow
         };
         if bounce > 0 {
-            counters.mirror_rays += queue.rays.len() as u64;
-            trace::closest_hits(frame, &queue.rays, t_max, hits, counters);
+            counters.mirror_rays += scratch.queue.rays.len() as u64;
+            stages::trace_queue(frame, scratch, counters);
         }
-        surface::mapped_surfaces(frame, queue, hits, surfaces, counters);
-        light::reflected_light(frame, mirrors, surfaces, shadows, counters);
-        bounce::gather(frame, mirrors, (queue, hits), surfaces, radiance);
-        next.clear();
-        if mirrors == Mirrors::Follow {
-            bounce::queue_mirrors(frame, queue, surfaces, next);
-        }
-        if next.rays.is_empty() {
+        stages::shade_hits(frame, mirrors, scratch, counters);
+        if scratch.next.rays.is_empty() {
             break;
         }
-        std::mem::swap(queue, next);
+        std::mem::swap(&mut scratch.queue, &mut scratch.next);
     }
 }

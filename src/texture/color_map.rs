@@ -55,9 +55,9 @@ impl ColorMap {
         match self {
             Self::Srgb8(g) => {
                 let lut = &*LINEAR_FROM_BYTE;
-                mix(g, st, wrap, |t, c| lut[usize::from(t[c])])
+                LinearRgb::from(g.mix3(st, wrap, |t, c| lut[usize::from(t[c])]))
             }
-            Self::Linear(g) => mix(g, st, wrap, |t, c| t[c]),
+            Self::Linear(g) => LinearRgb::from(g.mix3(st, wrap, |t, c| t[c])),
         }
     }
 
@@ -69,16 +69,4 @@ impl ColorMap {
             Self::Linear(g) => size_of_val(g.texels()),
         }
     }
-}
-
-fn mix<T: Copy>(
-    grid: &Grid<T>,
-    st: Vec2,
-    wrap: Wrap,
-    channel: impl Fn(&T, usize) -> f32,
-) -> LinearRgb {
-    let cell = grid.cell(st, wrap);
-    let texels = cell.texels.map(|i| grid.texel(i));
-    let value = |c| cell.mix([0, 1, 2, 3].map(|i: usize| channel(&texels[i], c)));
-    LinearRgb::new(value(0), value(1), value(2))
 }

@@ -91,6 +91,20 @@ impl<T: Copy> Grid<T> {
     }
 }
 
+impl<T: Copy> Grid<T> {
+    /// Bilinear means of the first three channels at `st`.
+    pub(super) fn mix3(
+        &self,
+        st: Vec2,
+        wrap: Wrap,
+        channel: impl Fn(&T, usize) -> f32,
+    ) -> [f32; 3] {
+        let cell = self.cell(st, wrap);
+        let texels = cell.texels.map(|i| self.texel(i));
+        [0, 1, 2].map(|c| cell.mix([0, 1, 2, 3].map(|i: usize| channel(&texels[i], c))))
+    }
+}
+
 impl Wrap {
     /// The two texels around coordinate `c` (0…1 across `n` texels) and the fraction between them.
     pub(super) fn neighbours(self, c: f32, n: u32) -> (u32, u32, f32) {

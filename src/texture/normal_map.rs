@@ -50,9 +50,9 @@ impl NormalMap {
     #[must_use]
     pub fn sample(&self, st: Vec2, wrap: Wrap) -> Vec3 {
         let stored = match self {
-            Self::U8(g) => mix(g, st, wrap, |t, c| f32::from(t[c])) * (1.0 / 255.0),
-            Self::U16(g) => mix(g, st, wrap, |t, c| f32::from(t[c])) * (1.0 / 65_535.0),
-            Self::F32(g) => mix(g, st, wrap, |t, c| t[c]),
+            Self::U8(g) => Vec3::from(g.mix3(st, wrap, |t, c| f32::from(t[c]))) * (1.0 / 255.0),
+            Self::U16(g) => Vec3::from(g.mix3(st, wrap, |t, c| f32::from(t[c]))) * (1.0 / 65_535.0),
+            Self::F32(g) => Vec3::from(g.mix3(st, wrap, |t, c| t[c])),
         };
         stored * 2.0 - Vec3::ONE
     }
@@ -66,11 +66,4 @@ impl NormalMap {
             Self::F32(g) => size_of_val(g.texels()),
         }
     }
-}
-
-fn mix<T: Copy>(grid: &Grid<T>, st: Vec2, wrap: Wrap, channel: impl Fn(&T, usize) -> f32) -> Vec3 {
-    let cell = grid.cell(st, wrap);
-    let texels = cell.texels.map(|i| grid.texel(i));
-    let value = |c| cell.mix([0, 1, 2, 3].map(|i: usize| channel(&texels[i], c)));
-    Vec3::new(value(0), value(1), value(2))
 }

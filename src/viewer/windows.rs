@@ -7,6 +7,7 @@ use super::theme;
 
 /// Keys and mouse, from the command table.
 pub fn help_ui(ctx: &egui::Context, open: &mut bool) {
+    *open &= !escaped(ctx);
     Window::new("Keys and mouse")
         .open(open)
         .collapsible(false)
@@ -32,6 +33,11 @@ pub fn help_ui(ctx: &egui::Context, open: &mut bool) {
         });
 }
 
+/// Whether Escape was pressed, which closes small windows.
+fn escaped(ctx: &egui::Context) -> bool {
+    ctx.input(|input| input.key_pressed(egui::Key::Escape))
+}
+
 fn keys_ui(ui: &mut egui::Ui) {
     Grid::new("keys")
         .num_columns(2)
@@ -53,7 +59,7 @@ fn keys_ui(ui: &mut egui::Ui) {
 /// A pixel's story; closing the window forgets it.
 pub fn story_ui(ctx: &egui::Context, story: &mut Option<String>) {
     let Some(text) = story else { return };
-    let mut open = true;
+    let mut open = !escaped(ctx);
     Window::new("Pixel's story")
         .open(&mut open)
         .default_size([520.0, 420.0])

@@ -8,6 +8,7 @@ pub mod trace;
 
 use glam::Vec3;
 
+use super::{Counters, Frame};
 use crate::geometry::{Hit, Ray};
 use crate::math::LinearRgb;
 use crate::surface::SurfaceInteraction;
@@ -108,4 +109,38 @@ pub struct Scratch {
     pub shadows: ShadowBatch,
     /// Sum of each sample in the tile's list.
     pub radiance: Vec<LinearRgb>,
+}
+
+/// Everything that follows once the hits of the queue's rays are known: the samples get what these rays saw,
+/// and `next` holds the mirror rays of the bounce after.
+pub fn shade_hits(
+    frame: &Frame<'_>,
+    mirrors: Mirrors,
+    scratch: &mut Scratch,
+    counters: &mut Counters,
+) {
+    let Scratch {
+        queue,
+        next,
+        hits,
+        surfaces,
+        shadows,
+        radiance,
+        ..
+    } = scratch;
+    surface::mapped_surfaces(frame, queue, hits, surfaces, counters);
+    light::reflected_light(frame, mirrors, surfaces, shadows, counters);
+    bounce::gather(frame, mirrors, (queue, hits), surfaces, radiance);
+    next.clear();
+    if mirrors == Mirrors::Follow {
+        bounce::queue_mirrors(frame, queue, surfaces, next);
+    }
+}
+
+/// Traces the queue's rays.
+pub fn trace_queue(frame: &Frame<'_>, scratch: &mut Scratch, counters: &mut Counters) {
+    let Scratch {
+        queue, t_max, hits, ..
+    } = scratch;
+    trace::closest_hits(frame, &queue.rays, t_max, hits, counters);
 }
