@@ -4,4 +4,5 @@ mod controls;
 mod driver;
 mod files;
 mod navigation;
+mod same_picture;
 mod worker;

@@ -109,6 +109,8 @@ impl Driver {
 
     /// Clicks a control found by role and name.
     pub fn click(&mut self, role: Role, label: &str) {
+        // What has only just appeared is laid out once more before it stands still.
+        self.harness.run_steps(3);
         self.node(role, label).click();
         self.harness.run_steps(2);
     }
