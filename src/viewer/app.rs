@@ -322,16 +322,8 @@ impl ViewerApp {
             Command::ExposureUp => *exposure = brighter(*exposure + EXPOSURE_STEP),
             Command::ExposureDown => *exposure = brighter(*exposure - EXPOSURE_STEP),
             Command::Select(method) => doc.settings.mapping.method = method,
-            Command::Undo => {
-                if !doc.undo() {
-                    self.toasts.note("Nothing to undo.");
-                }
-            }
-            Command::Redo => {
-                if !doc.redo() {
-                    self.toasts.note("Nothing to redo.");
-                }
-            }
+            Command::Undo => note_unless(doc.undo(), &mut self.toasts, "Nothing to undo."),
+            Command::Redo => note_unless(doc.redo(), &mut self.toasts, "Nothing to redo."),
             _ => {}
         }
     }
@@ -593,4 +585,11 @@ fn free_role(maps: &[MapSlot], path: &Path) -> MapRole {
         },
         |(role, _)| *role,
     )
+}
+
+/// Says why nothing happened.
+fn note_unless(done: bool, toasts: &mut Toasts, why_not: &str) {
+    if !done {
+        toasts.note(why_not);
+    }
 }

@@ -37,13 +37,16 @@ pub fn color_edit_ui(ui: &mut Ui, name: &str, color: &mut LinearRgb) -> Response
     response
 }
 
+/// Hue, saturation and brightness along a slider.
+type Track<'a> = &'a dyn Fn(f32) -> [f32; 3];
+
 fn picker_ui(ui: &mut Ui, name: &str, color: &mut LinearRgb) {
     let id = egui::Id::unique(("colour", name));
     let known = ui.data(|data| data.get_temp::<Picked>(id));
     let known = known.filter(|picked| picked.color == *color);
     let mut hsv = known.map_or_else(|| hsv_of(*color), |picked| picked.hsv);
     let [h, s, v] = hsv;
-    let tracks: [(&str, &dyn Fn(f32) -> [f32; 3]); 3] = [
+    let tracks: [(&str, Track<'_>); 3] = [
         ("hue", &|t| [t, 1.0, 1.0]),
         ("saturation", &|t| [h, t, v.max(0.15)]),
         ("brightness", &|t| [h, s, t]),

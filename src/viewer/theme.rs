@@ -18,7 +18,6 @@ pub const BACKDROP: Color32 = Color32::from_rgb(13, 14, 16);
 const RADIUS: CornerRadius = CornerRadius::same(4);
 
 /// Behind panel, status line and messages: the picture shimmers through.
-#[must_use]
 pub fn glass() -> egui::Frame {
     egui::Frame::new()
         .fill(Color32::from_rgba_unmultiplied(20, 21, 24, 236))
