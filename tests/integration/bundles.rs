@@ -86,7 +86,7 @@ impl Case {
 
 /// A pinhole's rays in blocks of 8 × 8 pixels. The axis of view is in the middle of a block.
 fn camera(eye: Vec3, target: Vec3, [columns, rows]: [u32; 2], field: f32) -> Vec<Ray> {
-    let ahead = (target - eye).normalize();
+    let ahead = (target - eye).normalize_or_zero();
     let right = ahead.any_orthonormal_vector();
     let up = right.cross(ahead);
     let blocks = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y)));
@@ -96,7 +96,7 @@ fn camera(eye: Vec3, target: Vec3, [columns, rows]: [u32; 2], field: f32) -> Vec
         let y = (y as f32 - 4.0 * rows as f32) / (8 * rows) as f32;
         Ray {
             origin: eye,
-            dir: (ahead + (right * x + up * y) * field).normalize(),
+            dir: (ahead + (right * x + up * y) * field).normalize_or_zero(),
         }
     };
     pixels.map(ray).collect()
@@ -184,12 +184,12 @@ fn shadow_and_mirror_rays() {
             let Some(hit) = hit else { continue };
             let origin = ray.at(hit.t * 0.999_99);
             let [a, b, c] = case.mesh.corners(hit.prim);
-            let normal = (b - a).cross(c - a).normalize();
+            let normal = (b - a).cross(c - a).normalize_or_zero();
             to_light.push(towards(origin, light));
             from_light.push(towards(light, origin));
             let sun = Vec3::new(0.0, -0.0, 1.0);
             to_sun.push(Ray { origin, dir: sun });
-            let dir = ray.dir.reflect(normal).normalize();
+            let dir = ray.dir.reflect(normal).normalize_or_zero();
             mirrored.push(Ray { origin, dir });
         }
         for rays in [to_light, to_sun, from_light, mirrored] {
@@ -211,7 +211,8 @@ fn rays_without_anything_in_common() {
         let alike = rays.iter().take(300).flat_map(|&ray| {
             let mut random = Random::new(ray.dir.x.to_bits());
             [(); 16].map(|()| {
-                let dir = (ray.dir + random.cube() * 1e-3 * random.unit().round()).normalize();
+                let dir =
+                    (ray.dir + random.cube() * 1e-3 * random.unit().round()).normalize_or_zero();
                 Ray { dir, ..ray }
             })
         });

@@ -162,7 +162,7 @@ fn a_flat_map_below_the_mesh_moves_only_parallax() {
         if method.shifts_uv() {
             let (uv, moved) = (hit.uv.expect("uv"), hit.uv_moved.expect("uv"));
             let shift = Vec2::from(moved) - Vec2::from(uv);
-            let wo = -DVec3::from(glam::Vec3::from(story.bounces[0].dir).as_dvec3());
+            let wo = -glam::Vec3::from(story.bounces[0].dir).as_dvec3();
             let divisor = if method == Method::Parallax {
                 wo.z
             } else {

@@ -187,7 +187,7 @@ fn leaving_rays_never_rehit() {
             if i % 2 == 0 {
                 // Almost in the plane.
                 dir = (dir - n_geo * dir.dot(n_geo) * random.pick(&[0.9, 0.999, 0.99999]))
-                    .normalize();
+                    .normalize_or_zero();
             }
             let origin = offset_origin(p, p_error, n_geo, dir, OriginRule::Bound);
             let leaving = Ray { origin, dir };

@@ -1,5 +1,7 @@
 //! Passes, previews and the hit cache: what may change when, and what never does.
 
+use std::f32::consts::TAU;
+
 use glam::DVec3;
 use reliefscope::math::LinearRgb;
 use reliefscope::render::{PassEnd, Progressive, Snapshot, probe};
@@ -11,7 +13,7 @@ use crate::support::{QuadScene, bits, converged, edited, heights, picture, plain
 
 fn waves() -> Snapshot {
     let map = heights(32, 32, |s, t| {
-        0.5 + 0.25 * ((s * 12.566).sin() + (t * 6.283).cos())
+        0.5 + 0.25 * ((s * 2.0 * TAU).sin() + (t * TAU).cos())
     });
     QuadScene::new().with_map(MapRole::Height, map).snapshot()
 }
