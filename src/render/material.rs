@@ -148,12 +148,8 @@ fn bind_height<'a>(
     amplitude: f32,
     midlevel: f32,
 ) -> BoundHeight<'a> {
-    // h = gain·s + bias, inverted 1 − h; displacement A·(h − midlevel).
-    let (gain, bias) = if slot.invert {
-        (-slot.gain, 1.0 - slot.bias)
-    } else {
-        (slot.gain, slot.bias)
-    };
+    // Displacement A·(h − midlevel).
+    let (gain, bias) = slot.gain_and_bias();
     BoundHeight {
         map: scene.images[slot.image].height(slot.channel),
         addressing: Addressing::from_slot(slot),
@@ -190,11 +186,7 @@ fn bind_normal<'a>(
 }
 
 fn bind_opacity<'a>(slot: &MapSlot, scene: &'a Scene) -> BoundOpacity<'a> {
-    let (scale, offset) = if slot.invert {
-        (-slot.gain, 1.0 - slot.bias)
-    } else {
-        (slot.gain, slot.bias)
-    };
+    let (scale, offset) = slot.gain_and_bias();
     BoundOpacity {
         map: scene.images[slot.image].height(slot.channel),
         addressing: Addressing::from_slot(slot),

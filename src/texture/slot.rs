@@ -136,4 +136,14 @@ impl MapSlot {
             note: String::new(),
         }
     }
+
+    /// What a stored height or opacity means: `stored · gain + bias`, inversion (`1 − value`) folded in.
+    #[must_use]
+    pub fn gain_and_bias(&self) -> (f32, f32) {
+        if self.invert {
+            (-self.gain, 1.0 - self.bias)
+        } else {
+            (self.gain, self.bias)
+        }
+    }
 }
