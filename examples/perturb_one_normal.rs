@@ -49,15 +49,14 @@ fn main() {
             method,
             ..MappingSettings::default()
         };
-        let mut points = [flat_point()];
-        MaterialMapping::choose(&settings, &maps).apply(&mut points);
-        let [s] = points;
-        let tilt_deg = s.n_shade.angle_between(Vec3::Z).to_degrees();
+        let mut s = flat_point();
+        MaterialMapping::choose(&settings, &maps).apply(&mut s);
+        let (normal, uv) = (Vec3::from(s.n_shade), Vec2::from(s.uv));
+        let tilt_deg = normal.angle_between(Vec3::Z).to_degrees();
         println!(
-            "{:<18} {:<22} {tilt_deg:5.2}°  {:.4}",
+            "{:<18} {:<22} {tilt_deg:5.2}°  {uv:.4}",
             method.name(),
-            format!("{:.4}", s.n_shade),
-            s.uv
+            format!("{normal:.4}"),
         );
     }
 }
@@ -65,15 +64,15 @@ fn main() {
 /// The middle of a flat tile of width 1, seen from 45 degrees along u.
 fn flat_point() -> SurfaceInteraction {
     SurfaceInteraction {
-        p: Vec3::ZERO,
-        p_error: Vec3::ZERO,
-        n_geo: Vec3::Z,
-        n_shade: Vec3::Z,
-        wo: normalize_or(Vec3::new(1.0, 0.0, 1.0), Vec3::Z),
-        uv: Vec2::splat(0.5),
-        grad_u: Vec3::X,
-        grad_v: Vec3::Y,
-        dp_du: Vec3::X,
+        p: Vec3::ZERO.into(),
+        p_error: Vec3::ZERO.into(),
+        n_geo: Vec3::Z.into(),
+        n_shade: Vec3::Z.into(),
+        wo: normalize_or(Vec3::new(1.0, 0.0, 1.0), Vec3::Z).into(),
+        uv: Vec2::splat(0.5).into(),
+        grad_u: Vec3::X.into(),
+        grad_v: Vec3::Y.into(),
+        dp_du: Vec3::X.into(),
         handedness: 1.0,
     }
 }

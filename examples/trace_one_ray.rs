@@ -50,11 +50,13 @@ fn main() {
     );
 
     let surface = surface_at(&mesh, &hit, &ray, SurfaceParts::Gradients);
-    println!("point  {} (known to ±{})", surface.p, surface.p_error);
-    println!("normal {}", surface.n_geo);
-    println!("uv     {}", surface.uv);
+    let [p, p_error, normal] = [surface.p, surface.p_error, surface.n_geo].map(Vec3::from);
+    println!("point  {p} (known to ±{p_error})");
+    println!("normal {normal}");
+    println!("uv     {}", Vec2::from(surface.uv));
     println!(
         "uv grows by {} and {} per unit of length",
-        surface.grad_u, surface.grad_v
+        Vec3::from(surface.grad_u),
+        Vec3::from(surface.grad_v)
     );
 }

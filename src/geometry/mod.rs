@@ -10,13 +10,14 @@ mod lanes;
 mod mesh;
 mod normalization;
 mod ray;
-pub mod simd;
 mod slabs;
 pub mod triangle;
 
+/// The vector instructions that trees are traced with.
+pub use crate::math::simd;
 pub use aabb::Aabb;
 pub use bvh::Bvh;
 pub use mesh::{TriangleAttributes, TriangleMesh};
 pub use normalization::Normalization;
-pub use ray::{Hit, OriginRule, Ray, offset_origin};
+pub use ray::{Hit, HitLanes, NO_HIT, OriginRule, Ray, RayLanes, offset_by_bound, offset_origin};
 pub use slabs::RaySlabs;

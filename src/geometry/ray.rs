@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 
-use crate::math::{next_down, next_up};
+use crate::math::lanes::Lanes;
+use crate::math::{Real, V3};
 
 /// A half line. `dir` has unit length, so `t` is a distance in internal units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,33 +49,104 @@ pub enum OriginRule {
 
 /// Origin for a ray leaving `p` towards `dir`, clear of its own triangle.
 ///
-/// Moves along `n_geo` by the rounding bound `p_error` (per axis, internal units), then one float
-/// further. A fixed epsilon is too big on a small mesh and too small far from the origin. Never pass
+/// [`offset_by_bound`] or, for comparison, the textbooks' fixed step.
+#[must_use]
+pub fn offset_origin(p: Vec3, p_error: Vec3, n_geo: Vec3, dir: Vec3, rule: OriginRule) -> Vec3 {
+    let [p, p_error, n_geo, dir] = [p, p_error, n_geo, dir].map(V3::from);
+    match rule {
+        OriginRule::Bound => offset_by_bound(p, n_geo.abs().dot(p_error), n_geo, dir).into(),
+        OriginRule::Fixed(distance) => (p + facing(n_geo, dir) * distance).into(),
+    }
+}
+
+/// Origin for a ray leaving `p` towards `dir`, clear of its own triangle.
+///
+/// Moves along `n_geo` by the rounding bound `|n_geo| · p_error` (internal units), then one float further
+/// on each axis. A fixed epsilon is too big on a small mesh and too small far from the origin. Never pass
 /// a shading normal: it may point into the triangle.
 ///
 /// Source: PBRT 4th ed., §6.8.6.
+#[inline(always)]
 #[must_use]
-pub fn offset_origin(p: Vec3, p_error: Vec3, n_geo: Vec3, dir: Vec3, rule: OriginRule) -> Vec3 {
-    let outward = if dir.dot(n_geo) < 0.0 { -n_geo } else { n_geo };
-    match rule {
-        OriginRule::Bound => {
-            let distance = n_geo.abs().dot(p_error);
-            let moved = p + outward * distance;
-            let step = |x: f32, side: f32| {
-                if side > 0.0 {
-                    next_up(x)
-                } else if side < 0.0 {
-                    next_down(x)
-                } else {
-                    x
-                }
-            };
-            Vec3::new(
-                step(moved.x, outward.x),
-                step(moved.y, outward.y),
-                step(moved.z, outward.z),
-            )
+pub fn offset_by_bound<F: Real>(p: V3<F>, bound: F, n_geo: V3<F>, dir: V3<F>) -> V3<F> {
+    let outward = facing(n_geo, dir);
+    let moved = p + outward * bound;
+    let zero = bound.splat(0.0);
+    V3::new(
+        moved.x.stepped(outward.x.gt(zero), outward.x.lt(zero)),
+        moved.y.stepped(outward.y.gt(zero), outward.y.lt(zero)),
+        moved.z.stepped(outward.z.gt(zero), outward.z.lt(zero)),
+    )
+}
+
+/// The normal on the side of `dir`.
+#[inline(always)]
+fn facing<F: Real>(n: V3<F>, dir: V3<F>) -> V3<F> {
+    let cos = dir.dot(n);
+    V3::select(cos.lt(cos.splat(0.0)), -n, n)
+}
+
+/// Up to `N` rays side by side.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RayLanes<const N: usize> {
+    /// Starts.
+    pub origin: [Lanes<f32, N>; 3],
+    /// Unit directions.
+    pub dir: [Lanes<f32, N>; 3],
+    /// Where each ray ends; a place whose number is not above 0 holds no ray.
+    pub t_max: Lanes<f32, N>,
+}
+
+/// What `N` rays side by side hit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HitLanes<const N: usize> {
+    /// Triangle, or [`NO_HIT`].
+    pub prim: Lanes<u32, N>,
+    /// Barycentric weight of its second vertex.
+    pub u: Lanes<f32, N>,
+    /// Barycentric weight of its third vertex.
+    pub v: Lanes<f32, N>,
+}
+
+/// No triangle.
+pub const NO_HIT: u32 = u32::MAX;
+
+impl<const N: usize> RayLanes<N> {
+    /// No rays.
+    #[must_use]
+    pub const fn none() -> Self {
+        Self {
+            origin: [Lanes::splat(0.0); 3],
+            dir: [Lanes::splat(0.0); 3],
+            t_max: Lanes::splat(-1.0),
         }
-        OriginRule::Fixed(distance) => p + outward * distance,
+    }
+
+    /// The ray in a place.
+    #[must_use]
+    pub fn ray(&self, place: usize) -> Ray {
+        let at = |columns: &[Lanes<f32, N>; 3]| {
+            Vec3::new(
+                columns[0].0[place],
+                columns[1].0[place],
+                columns[2].0[place],
+            )
+        };
+        Ray {
+            origin: at(&self.origin),
+            dir: at(&self.dir),
+        }
+    }
+}
+
+impl<const N: usize> HitLanes<N> {
+    /// No hits.
+    #[must_use]
+    pub const fn none() -> Self {
+        Self {
+            prim: Lanes::splat(NO_HIT),
+            u: Lanes::splat(0.0),
+            v: Lanes::splat(0.0),
+        }
     }
 }

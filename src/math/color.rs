@@ -4,16 +4,19 @@ use std::ops::{Add, AddAssign, Mul, MulAssign, Sub};
 
 use serde::{Deserialize, Serialize};
 
+use super::Real;
+
 /// Linear light with Rec. 709 primaries. Any range: values above 1 are brighter than white.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(from = "[f32; 3]", into = "[f32; 3]")]
-pub struct LinearRgb {
+///
+/// With vector lanes, one colour for each.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LinearRgb<F = f32> {
     /// Red.
-    pub r: f32,
+    pub r: F,
     /// Green.
-    pub g: f32,
+    pub g: F,
     /// Blue.
-    pub b: f32,
+    pub b: F,
 }
 
 impl LinearRgb {
@@ -32,12 +35,6 @@ impl LinearRgb {
     #[must_use]
     pub const fn gray(value: f32) -> Self {
         Self::new(value, value, value)
-    }
-
-    /// The channels in order.
-    #[must_use]
-    pub const fn to_array(self) -> [f32; 3] {
-        [self.r, self.g, self.b]
     }
 
     /// Largest channel.
@@ -59,8 +56,51 @@ impl LinearRgb {
     }
 }
 
-impl From<[f32; 3]> for LinearRgb {
-    fn from([r, g, b]: [f32; 3]) -> Self {
+impl<F: Copy> LinearRgb<F> {
+    /// The channels in order.
+    #[must_use]
+    pub const fn to_array(self) -> [F; 3] {
+        [self.r, self.g, self.b]
+    }
+}
+
+impl<F: Real> LinearRgb<F> {
+    /// The same colour in as many lanes as `like` has.
+    #[inline(always)]
+    #[must_use]
+    pub fn splat(like: F, c: LinearRgb) -> Self {
+        Self {
+            r: like.splat(c.r),
+            g: like.splat(c.g),
+            b: like.splat(c.b),
+        }
+    }
+
+    /// `yes` where the mask holds, else `no`.
+    #[inline(always)]
+    #[must_use]
+    pub fn select(mask: F::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            r: F::select(mask, yes.r, no.r),
+            g: F::select(mask, yes.g, no.g),
+            b: F::select(mask, yes.b, no.b),
+        }
+    }
+}
+
+impl Serialize for LinearRgb {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.to_array().serialize(serializer)
+    }
+}
+impl<'de> Deserialize<'de> for LinearRgb {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        <[f32; 3]>::deserialize(deserializer).map(Self::from)
+    }
+}
+impl<F> From<[F; 3]> for LinearRgb<F> {
+    #[inline(always)]
+    fn from([r, g, b]: [F; 3]) -> Self {
         Self { r, g, b }
     }
 }
@@ -69,33 +109,54 @@ impl From<LinearRgb> for [f32; 3] {
         c.to_array()
     }
 }
-impl Add for LinearRgb {
+impl<F: Real> Add for LinearRgb<F> {
     type Output = Self;
+    #[inline(always)]
     fn add(self, o: Self) -> Self {
-        Self::new(self.r + o.r, self.g + o.g, self.b + o.b)
+        Self {
+            r: self.r + o.r,
+            g: self.g + o.g,
+            b: self.b + o.b,
+        }
     }
 }
-impl Sub for LinearRgb {
+impl<F: Real> Sub for LinearRgb<F> {
     type Output = Self;
+    #[inline(always)]
     fn sub(self, o: Self) -> Self {
-        Self::new(self.r - o.r, self.g - o.g, self.b - o.b)
+        Self {
+            r: self.r - o.r,
+            g: self.g - o.g,
+            b: self.b - o.b,
+        }
     }
 }
-impl AddAssign for LinearRgb {
+impl<F: Real> AddAssign for LinearRgb<F> {
+    #[inline(always)]
     fn add_assign(&mut self, o: Self) {
         *self = *self + o;
     }
 }
-impl Mul for LinearRgb {
+impl<F: Real> Mul for LinearRgb<F> {
     type Output = Self;
+    #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        Self::new(self.r * o.r, self.g * o.g, self.b * o.b)
+        Self {
+            r: self.r * o.r,
+            g: self.g * o.g,
+            b: self.b * o.b,
+        }
     }
 }
-impl Mul<f32> for LinearRgb {
+impl<F: Real> Mul<F> for LinearRgb<F> {
     type Output = Self;
-    fn mul(self, k: f32) -> Self {
-        Self::new(self.r * k, self.g * k, self.b * k)
+    #[inline(always)]
+    fn mul(self, k: F) -> Self {
+        Self {
+            r: self.r * k,
+            g: self.g * k,
+            b: self.b * k,
+        }
     }
 }
 impl MulAssign<f32> for LinearRgb {

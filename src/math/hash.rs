@@ -1,17 +1,19 @@
 //! Integer hashing for samples that repeat on every machine and thread count.
 
+use super::real::Bits;
+
 /// Mixes 32 bits so that each input bit affects each output bit (Ellis' `lowbias32` constants).
+#[inline(always)]
 #[must_use]
-pub const fn hash_u32(mut x: u32) -> u32 {
-    x ^= x >> 16;
-    x = x.wrapping_mul(0x7feb_352d);
-    x ^= x >> 15;
-    x = x.wrapping_mul(0x846c_a68b);
-    x ^ (x >> 16)
+pub fn hash<B: Bits>(mut x: B) -> B {
+    x = x.xor_each(x.shr(16)).times(0x7feb_352d);
+    x = x.xor_each(x.shr(15)).times(0x846c_a68b);
+    x.xor_each(x.shr(16))
 }
 
 /// The upper 24 bits as a number in `[0, 1)`, exact in `f32`.
+#[inline(always)]
 #[must_use]
-pub fn unit_f32_from_bits(bits: u32) -> f32 {
-    (bits >> 8) as f32 * (1.0 / 16_777_216.0)
+pub fn unit_interval<B: Bits>(bits: B) -> B::Real {
+    bits.shr(8).signed_to_real() * (1.0 / 16_777_216.0)
 }

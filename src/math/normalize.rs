@@ -1,24 +1,11 @@
-//! Normalisation that cannot produce NaN.
+//! Directions of vectors of any length.
 
 use glam::Vec3;
 
-/// `v / |v|`, or `fallback` where the length is zero, not finite or under- or overflows.
+use super::V3;
+
+/// `v / |v|`, or `fallback` where the length is zero or not finite.
 #[must_use]
 pub fn normalize_or(v: Vec3, fallback: Vec3) -> Vec3 {
-    let largest = v.abs().max_element();
-    if !(largest > 0.0 && largest.is_finite()) {
-        return fallback;
-    }
-    // Scaling first keeps the squared length inside the range of f32 for lengths of 10^±30.
-    let scaled = if (1e-15..1e15).contains(&largest) {
-        v
-    } else {
-        v / largest
-    };
-    let length = scaled.length();
-    if length > 0.0 {
-        scaled / length
-    } else {
-        fallback
-    }
+    V3::from(v).normalize_or(fallback.into()).into()
 }

@@ -164,7 +164,7 @@ fn weighted_mean(center: usize, n: usize, value: impl Fn(usize) -> f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{hash_u32, linear_from_srgb, unit_f32_from_bits};
+    use crate::math::{hash, linear_from_srgb, unit_interval};
 
     // Wider than SSIM's window and less high.
     const SIZE: [u32; 2] = [17, 9];
@@ -181,7 +181,7 @@ mod tests {
     }
 
     fn noise(seed: u32) -> Picture {
-        let value = |x, y, c| unit_f32_from_bits(hash_u32(seed * 65_536 + (x * 64 + y) * 4 + c));
+        let value = |x, y, c| unit_interval(hash(seed * 65_536 + (x * 64 + y) * 4 + c));
         picture(|x, y| LinearRgb::new(value(x, y, 1), value(x, y, 2), value(x, y, 3)))
     }
 

@@ -68,30 +68,31 @@ impl Tile {
         width: usize,
         f: &impl Fn(LinearRgb) -> T,
     ) {
+        let row = |y: u32| y as usize * width + self.x0 as usize;
         if self.samples > 0 {
             let share = 1.0 / self.samples as f32;
-            for (y, sums) in self.sums.chunks_exact(self.width as usize).enumerate() {
-                let start = y * width + self.x0 as usize;
-                for (pixel, &sum) in rows[start..].iter_mut().zip(sums) {
-                    *pixel = f(sum * share);
+            for y in 0..self.height {
+                let pixels = &mut rows[row(y)..];
+                for (x, pixel) in (0..self.width).zip(pixels) {
+                    *pixel = f(self.sum(x, y) * share);
                 }
             }
             return;
         }
+        let Some(stride) = self.first_stride else {
+            let black = f(LinearRgb::BLACK);
+            (0..self.height).for_each(|y| rows[row(y)..][..self.width as usize].fill(black));
+            return;
+        };
         // Tiles start at multiples of every stride that divides their size, so every pixel's stand-in, to
         // its upper left on the preview's grid, is inside the tile.
-        let stride = self.first_stride.unwrap_or(TILE_SIZE) as usize;
-        let (tile_width, tile_height) = (self.width as usize, self.height as usize);
-        for y in (0..tile_height).step_by(stride) {
-            let start = y * width + self.x0 as usize;
-            for (cell, pixels) in rows[start..start + tile_width]
-                .chunks_mut(stride)
-                .enumerate()
-            {
-                pixels.fill(f(self.sums[y * tile_width + cell * stride]));
+        for y in (0..self.height).step_by(stride as usize) {
+            let pixels = &mut rows[row(y)..][..self.width as usize];
+            for (cell, pixels) in pixels.chunks_mut(stride as usize).enumerate() {
+                pixels.fill(f(self.sum(cell as u32 * stride, y)));
             }
-            for copy in 1..stride.min(tile_height - y) {
-                rows.copy_within(start..start + tile_width, start + copy * width);
+            for copy in y + 1..(y + stride).min(self.height) {
+                rows.copy_within(row(y)..row(y) + self.width as usize, row(copy));
             }
         }
     }

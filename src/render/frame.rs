@@ -6,7 +6,8 @@ use super::Snapshot;
 use super::material::FrameMaterial;
 use crate::geometry::TriangleMesh;
 use crate::geometry::bvh::Bvh;
-use crate::math::LinearRgb;
+use crate::math::simd::SimdLevel;
+use crate::math::{LinearRgb, Real, V3};
 use crate::scene::{Background, ShadingModel};
 use crate::shading::{Falloff, LightKind};
 
@@ -52,6 +53,8 @@ pub struct Frame<'a> {
     pub mesh: &'a TriangleMesh,
     /// Tree over them.
     pub bvh: &'a Bvh,
+    /// Vector instructions of the stages: those of the tree.
+    pub level: SimdLevel,
     /// Rays of the eye.
     pub camera: FrameCamera,
     /// Point and directional lights that are on.
@@ -87,6 +90,7 @@ impl<'a> Frame<'a> {
         Self {
             mesh: &scene.mesh,
             bvh: &scene.bvh,
+            level: scene.bvh.level(),
             camera: FrameCamera::new(snapshot),
             lights: frame_lights(snapshot),
             ambient: ambient(snapshot),
@@ -101,13 +105,17 @@ impl<'a> Frame<'a> {
     }
 
     /// What a ray sees that leaves the scene in the unit direction `dir`.
+    #[inline(always)]
     #[must_use]
-    pub fn background(&self, dir: Vec3) -> LinearRgb {
+    pub fn background<F: Real>(&self, dir: V3<F>) -> LinearRgb<F> {
         let Background { top, bottom } = self.background;
+        let like = dir.x;
         if top == bottom {
-            return top;
+            return LinearRgb::splat(like, top);
         }
-        bottom + (top - bottom) * (0.5 + 0.5 * dir.dot(self.up)).clamp(0.0, 1.0)
+        let height = dir.dot(V3::splat(like, self.up)) * 0.5 + 0.5;
+        let height = height.larger(like.splat(0.0)).smaller(like.splat(1.0));
+        LinearRgb::splat(like, bottom) + LinearRgb::splat(like, top - bottom) * height
     }
 }
 
@@ -128,11 +136,13 @@ impl FrameCamera {
     }
 
     /// Unit direction through the point `(x, y)` of the picture, in pixels from its top left corner.
+    #[inline(always)]
     #[must_use]
-    pub fn direction(&self, x: f32, y: f32) -> Vec3 {
-        let d =
-            self.forward + self.per_column * (x - self.half[0]) + self.per_row * (y - self.half[1]);
-        crate::math::normalize_or(d, self.forward)
+    pub fn direction<F: Real>(&self, x: F, y: F) -> V3<F> {
+        let forward = V3::splat(x, self.forward);
+        let right = V3::splat(x, self.per_column) * (x - self.half[0]);
+        let down = V3::splat(x, self.per_row) * (y - self.half[1]);
+        (forward + right + down).normalize_or(forward)
     }
 }
 

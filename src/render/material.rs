@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use crate::math::LinearRgb;
+use crate::math::{LinearRgb, Real, V2};
 use crate::scene::Scene;
 use crate::shading::Material;
 use crate::surface::SurfaceParts;
@@ -22,15 +22,18 @@ pub struct BoundColor<'a> {
 
 impl BoundColor<'_> {
     /// Linear colour at `uv`.
+    #[inline(always)]
     #[must_use]
-    pub fn color(&self, uv: Vec2) -> LinearRgb {
-        let c = self
-            .map
-            .sample(self.addressing.st(uv), self.addressing.wrap);
+    pub fn color<F: Real>(&self, uv: V2<F>) -> LinearRgb<F> {
+        let st = self.addressing.st(uv);
+        let LinearRgb { r, g, b } = self.map.sample(st, self.addressing.wrap);
         if self.gain == 1.0 && self.bias == 0.0 {
-            c
-        } else {
-            c.map(|x| x * self.gain + self.bias)
+            return LinearRgb { r, g, b };
+        }
+        LinearRgb {
+            r: r * self.gain + self.bias,
+            g: g * self.gain + self.bias,
+            b: b * self.gain + self.bias,
         }
     }
 }
@@ -47,7 +50,7 @@ pub struct BoundOpacity<'a> {
 impl BoundOpacity<'_> {
     /// Whether there is surface at `uv`: opacity of one half or more.
     #[must_use]
-    pub fn is_solid(&self, uv: Vec2) -> bool {
+    pub fn is_solid(&self, uv: V2) -> bool {
         self.map
             .sample(self.addressing.st(uv), self.addressing.wrap)
             * self.scale

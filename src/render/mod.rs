@@ -7,6 +7,7 @@ mod material;
 mod probe;
 mod progressive;
 mod sampling;
+mod sites;
 mod stages;
 mod tile;
 

@@ -5,12 +5,13 @@ use std::fmt;
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 
-use super::stages::{self, Mirrors, Scratch, light, trace};
+use super::sites::Sites;
+use super::stages::{self, Column3, Places, Scratch, Surfaces, camera, light, surface, trace};
 use super::{Counters, Frame, Snapshot};
 use crate::geometry::triangle::Watertight;
-use crate::geometry::{Hit, OriginRule, Ray, offset_origin};
-use crate::math::{LinearRgb, srgb8_from_linear};
-use crate::surface::{SurfaceInteraction, surface_at};
+use crate::geometry::{Hit, Ray, offset_by_bound};
+use crate::math::{LinearRgb, V3, srgb8_from_linear};
+use crate::surface::{SurfaceInteraction, SurfaceParts, surface_at};
 
 /// Every step from a pixel's first ray to its colour. Lengths are world units, directions unit vectors,
 /// colours linear.
@@ -134,31 +135,24 @@ pub fn probe(snapshot: &Snapshot, pixel: [u32; 2]) -> Option<PixelStory> {
         return None;
     }
     let frame = Frame::new(snapshot);
-    let mut scratch = Scratch::default();
-    let dir = frame.camera.direction(x as f32 + 0.5, y as f32 + 0.5);
-    scratch.queue.push(
-        Ray {
-            origin: frame.camera.origin,
-            dir,
-        },
-        0,
-        1.0,
-    );
-    scratch.radiance.push(LinearRgb::BLACK);
+    let Scratch { mut hits, mut work } = Scratch::default();
+    let mut active = Places::EMPTY;
+    active.insert(0);
+    let sites = Sites::all();
+    camera::camera_rays(&frame, sites, pixel, (active, 0), &mut work.rays);
+    work.rays.count = 1;
     let mut bounces = Vec::new();
     for index in 0..=frame.max_bounces {
-        let mirrors = if index == frame.max_bounces {
-            Mirrors::End
-        } else {
-            Mirrors::Follow
-        };
-        bounces.push(one_bounce(snapshot, &frame, mirrors, &mut scratch));
-        if scratch.next.rays.is_empty() {
+        let counters = &mut Counters::default();
+        let (ray, weight) = (work.rays.lanes.ray(0), work.rays.weight.0[0]);
+        trace::closest_hits(&frame, &work.rays, &mut hits, counters);
+        work.shade_hits(&frame, &hits, stages::mirrors_at(&frame, index), counters);
+        bounces.push(one_bounce(snapshot, &frame, (&ray, weight), &work.surfaces));
+        if work.rays.active.is_empty() {
             break;
         }
-        std::mem::swap(&mut scratch.queue, &mut scratch.next);
     }
-    let color = scratch.radiance[0];
+    let color = first(&work.radiance);
     let method = snapshot.settings.mapping.method.name();
     Some(PixelStory {
         pixel,
@@ -169,27 +163,22 @@ pub fn probe(snapshot: &Snapshot, pixel: [u32; 2]) -> Option<PixelStory> {
     })
 }
 
+/// The colour in the first place.
+fn first([r, g, b]: &Column3) -> LinearRgb {
+    LinearRgb::new(r.0[0], g.0[0], b.0[0])
+}
+
 fn one_bounce(
     snapshot: &Snapshot,
     frame: &Frame<'_>,
-    mirrors: Mirrors,
-    scratch: &mut Scratch,
+    (ray, weight): (&Ray, f32),
+    surfaces: &Surfaces,
 ) -> BounceStory {
-    let counters = &mut Counters::default();
-    stages::trace_queue(frame, scratch, counters);
-    stages::shade_hits(frame, mirrors, scratch, counters);
-    let Scratch {
-        queue,
-        hits,
-        surfaces,
-        ..
-    } = scratch;
-    let (ray, hit) = (queue.rays[0], hits[0]);
-    let color = surfaces
-        .reflected
-        .first()
-        .copied()
-        .unwrap_or_else(|| frame.background(ray.dir));
+    let hit = nearest(frame, ray, f32::INFINITY);
+    let color = match hit {
+        Some(_) => first(&surfaces.reflected),
+        None => frame.background(V3::from(ray.dir)),
+    };
     BounceStory {
         origin: snapshot
             .scene
@@ -197,58 +186,58 @@ fn one_bounce(
             .world_from_internal(ray.origin)
             .to_array(),
         dir: ray.dir.to_array(),
-        weight: queue.weights[0],
-        hit: hit.map(|hit| {
-            hit_story(
-                snapshot,
-                frame,
-                &ray,
-                &hit,
-                (&surfaces.points[0], surfaces.diffuse[0]),
-            )
-        }),
+        weight,
+        hit: hit.map(|hit| hit_story(snapshot, frame, ray, &hit)),
         color,
     }
 }
 
-fn hit_story(
-    snapshot: &Snapshot,
-    frame: &Frame<'_>,
-    ray: &Ray,
-    hit: &Hit,
-    (mapped, diffuse): (&SurfaceInteraction, LinearRgb),
-) -> HitStory {
+/// The nearest solid thing on a ray.
+fn nearest(frame: &Frame<'_>, ray: &Ray, t_max: f32) -> Option<Hit> {
+    let tests = trace::CutoutTests::default();
+    let solid = |prim, u, v| tests.is_solid(frame, prim, u, v);
+    frame.bvh.intersect::<Watertight, _>(ray, t_max, &solid)
+}
+
+fn hit_story(snapshot: &Snapshot, frame: &Frame<'_>, ray: &Ray, hit: &Hit) -> HitStory {
     let normalization = &snapshot.scene.normalization;
     let attributes = frame.mesh.attributes[hit.prim as usize];
     let index = usize::from(attributes.material);
     let material = &frame.materials[index];
     let parts = material.parts(attributes.has_uv);
     let plain = surface_at(frame.mesh, hit, ray, parts);
-    let has_uv = parts > crate::surface::SurfaceParts::Plain;
+    let mut mapped = plain;
+    let diffuse = surface::perturb(material, parts, &mut mapped);
+    let has_uv = parts > SurfaceParts::Plain;
     let front = plain.wo.dot(plain.n_geo) >= 0.0;
-    let n_smooth = if front { plain.n_shade } else { -plain.n_shade };
-    let per_world = |g: Vec3| (g.as_dvec3() * normalization.scale).to_array();
+    let towards_eye = |n: V3| Vec3::from(if front { n } else { -n });
+    (mapped.n_geo, mapped.n_shade) = (
+        towards_eye(mapped.n_geo).into(),
+        towards_eye(mapped.n_shade).into(),
+    );
+    let n_smooth = towards_eye(plain.n_shade);
+    let per_world = |g: V3| (Vec3::from(g).as_dvec3() * normalization.scale).to_array();
     HitStory {
         t: normalization.world_length(hit.t),
         triangle: hit.prim,
         barycentrics: [1.0 - hit.u - hit.v, hit.u, hit.v],
         material: snapshot.settings.materials[index].name.clone(),
-        p: normalization.world_from_internal(plain.p).to_array(),
-        p_error: (plain.p_error.as_dvec3() / normalization.scale).to_array(),
+        p: normalization.world_from_internal(plain.p.into()).to_array(),
+        p_error: (Vec3::from(plain.p_error).as_dvec3() / normalization.scale).to_array(),
         front,
-        uv: has_uv.then(|| plain.uv.to_array()),
-        uv_moved: has_uv.then(|| mapped.uv.to_array()),
+        uv: has_uv.then(|| plain.uv.into()),
+        uv_moved: has_uv.then(|| mapped.uv.into()),
         gradients: [per_world(plain.grad_u), per_world(plain.grad_v)],
-        n_geo: mapped.n_geo.to_array(),
+        n_geo: mapped.n_geo.into(),
         n_smooth: n_smooth.to_array(),
-        n_shade: mapped.n_shade.to_array(),
-        tilt_deg: angle(n_smooth, mapped.n_shade).to_degrees(),
+        n_shade: mapped.n_shade.into(),
+        tilt_deg: angle(n_smooth, mapped.n_shade.into()).to_degrees(),
         diffuse,
         ambient: diffuse * frame.ambient,
         lights: frame
             .lights
             .iter()
-            .filter_map(|l| light_story(snapshot, frame, l, (mapped, diffuse, index)))
+            .filter_map(|l| light_story(snapshot, frame, l, (&mapped, diffuse, index)))
             .collect(),
         reflectivity: material.reflectivity,
     }
@@ -261,7 +250,12 @@ fn light_story(
     (s, diffuse, material): (&SurfaceInteraction, LinearRgb, usize),
 ) -> Option<LightStory> {
     let normalization = &snapshot.scene.normalization;
-    let (wi, distance, irradiance) = light::arriving(light, s)?;
+    let arriving = light::arriving(light, s.p);
+    if !arriving.arrives {
+        return None;
+    }
+    let (wi, distance) = (arriving.wi, arriving.distance);
+    let irradiance = light.irradiance * arriving.falloff;
     let (cos_geo, cos_shade) = (s.n_geo.dot(wi), s.n_shade.dot(wi));
     let visibility = if !(cos_geo > 0.0 && cos_shade > 0.0) {
         Visibility::Behind
@@ -277,7 +271,8 @@ fn light_story(
     } else {
         Visibility::Visible
     };
-    let response = light::response(frame.model, &frame.materials[material], s, diffuse, wi);
+    let material = &frame.materials[material];
+    let response = light::response(frame.model, material, s.n_shade, s.wo, diffuse, wi);
     let seen = if visibility == Visibility::Visible {
         irradiance
     } else {
@@ -285,7 +280,7 @@ fn light_story(
     };
     Some(LightStory {
         name: snapshot.settings.lights[light.index].name.clone(),
-        wi: wi.to_array(),
+        wi: wi.into(),
         distance: distance
             .is_finite()
             .then(|| normalization.world_length(distance)),
@@ -299,15 +294,10 @@ fn light_story(
 }
 
 /// The nearest thing between a point and a light.
-fn occluder(frame: &Frame<'_>, s: &SurfaceInteraction, wi: Vec3, distance: f32) -> Option<Hit> {
-    let origin = offset_origin(s.p, s.p_error, s.n_geo, wi, OriginRule::Bound);
-    let tests = trace::CutoutTests::default();
-    let solid = |prim, u, v| tests.is_solid(frame, prim, u, v);
-    frame.bvh.intersect::<Watertight, _>(
-        &Ray { origin, dir: wi },
-        distance * light::LIGHT_END,
-        &solid,
-    )
+fn occluder(frame: &Frame<'_>, s: &SurfaceInteraction, wi: V3, distance: f32) -> Option<Hit> {
+    let origin = offset_by_bound(s.p, s.n_geo.abs().dot(s.p_error), s.n_geo, wi).into();
+    let dir = wi.into();
+    nearest(frame, &Ray { origin, dir }, distance * light::LIGHT_END)
 }
 
 /// Angle between unit vectors, accurate near 0 where the arc cosine is not.

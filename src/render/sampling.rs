@@ -1,6 +1,6 @@
 //! Where in a pixel its samples lie.
 
-use crate::math::{hash_u32, unit_f32_from_bits};
+use crate::math::{Bits, Real as _, hash, unit_interval};
 
 /// Place of sample `index` in the pixel (column `x`, row `y`), both coordinates in `[0, 1)`.
 ///
@@ -10,17 +10,26 @@ use crate::math::{hash_u32, unit_f32_from_bits};
 ///
 /// Source: Sobol' dimensions 0 and 1 with hash-based Owen scrambling (Laine & Karras 2011; Burley 2020),
 /// then a digital shift that takes the first point to the centre and keeps every stratum.
+#[inline(always)]
 #[must_use]
-pub fn pixel_sample([x, y]: [u32; 2], index: u32) -> [f32; 2] {
+pub fn pixel_sample<B: Bits>([x, y]: [B; 2], index: u32) -> [B::Real; 2] {
     if index == 0 {
-        return [0.5, 0.5];
+        let half = x.to_real().splat(0.5);
+        return [half, half];
     }
-    let seed = hash_u32(x ^ hash_u32(y ^ 0x9e37_79b9));
-    let scrambled =
-        |bits: u32, seed: u32| owen_scramble(bits, seed) ^ owen_scramble(0, seed) ^ 0x8000_0000;
+    let seed = hash(x.xor_each(hash(y.xor_each(y.splat(0x9e37_79b9)))));
     let first = scrambled(index.reverse_bits(), seed);
-    let second = scrambled(sobol_dimension_1(index), hash_u32(seed ^ 0x5bd1_e995));
-    [unit_f32_from_bits(first), unit_f32_from_bits(second)]
+    let other_seed = hash(seed.xor_each(seed.splat(0x5bd1_e995)));
+    let second = scrambled(sobol_dimension_1(index), other_seed);
+    [unit_interval(first), unit_interval(second)]
+}
+
+/// The point scrambled for a pixel, and shifted so that the pixel's first point lies in the centre.
+#[inline(always)]
+fn scrambled<B: Bits>(bits: u32, seed: B) -> B {
+    let moved = owen_scramble(seed.splat(bits), seed);
+    let first = owen_scramble(seed.splat(0), seed);
+    moved.xor_each(first).xor_each(seed.splat(0x8000_0000))
 }
 
 /// Second dimension of the Sobol' sequence: direction numbers of the polynomial x + 1.
@@ -38,14 +47,25 @@ fn sobol_dimension_1(mut index: u32) -> u32 {
 }
 
 /// Nested uniform scrambling: each bit is flipped by a hash of the bits above it.
-fn owen_scramble(bits: u32, seed: u32) -> u32 {
-    let mut x = bits.reverse_bits();
-    x = x.wrapping_add(seed);
-    x ^= x.wrapping_mul(0x6c50_b47c);
-    x ^= x.wrapping_mul(0xb82f_1e52);
-    x ^= x.wrapping_mul(0xc7af_e638);
-    x ^= x.wrapping_mul(0x8d22_f6e6);
-    x.reverse_bits()
+#[inline(always)]
+fn owen_scramble<B: Bits>(bits: B, seed: B) -> B {
+    let mut x = reversed(bits).plus_each(seed);
+    x = x.xor_each(x.times(0x6c50_b47c));
+    x = x.xor_each(x.times(0xb82f_1e52));
+    x = x.xor_each(x.times(0xc7af_e638));
+    x = x.xor_each(x.times(0x8d22_f6e6));
+    reversed(x)
+}
+
+/// The bits in opposite order.
+#[inline(always)]
+fn reversed<B: Bits>(x: B) -> B {
+    let swap = |x: B, by: u32, low: u32| x.shr(by).and(low).or_each(x.and(low).shl(by));
+    let x = swap(x, 1, 0x5555_5555);
+    let x = swap(x, 2, 0x3333_3333);
+    let x = swap(x, 4, 0x0f0f_0f0f);
+    let x = swap(x, 8, 0x00ff_00ff);
+    x.shr(16).or_each(x.shl(16))
 }
 
 #[cfg(test)]
@@ -62,7 +82,7 @@ mod tests {
                         (1_u32 << log_columns, 1_u32 << (log_count - log_columns));
                     let mut seen = vec![false; count as usize];
                     for k in 0..count {
-                        let [sx, sy] = pixel_sample(pixel, k);
+                        let [sx, sy] = pixel_sample::<u32>(pixel, k);
                         assert!((0.0..1.0).contains(&sx) && (0.0..1.0).contains(&sy));
                         let cell =
                             (sy * rows as f32) as u32 * columns + (sx * columns as f32) as u32;

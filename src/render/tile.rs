@@ -1,41 +1,17 @@
-//! One tile: its share of the film, its cached hits, and the walk of its rays through the stages.
+//! One tile: its share of the film, its cached hits, and its passes.
 
-use super::sampling::pixel_sample;
-use super::stages::{self, Mirrors, Scratch, trace};
+use super::sites::{Sites, film_place};
+use super::stages::{self, Column, Column3, PLACES, Places, Scratch, camera, trace};
 use super::{Counters, Frame};
-use crate::geometry::{Hit, Ray};
+use crate::geometry::HitLanes;
 use crate::math::LinearRgb;
 
 /// Pixels along one side of a tile. 32 measured well: enough rays to amortise a stage, small enough to
 /// stay in the second-level cache.
 pub const TILE_SIZE: u32 = 32;
 
-/// Side of the blocks that a tile's pixels are listed in; divides [`TILE_SIZE`].
-const BLOCK_SIZE: u32 = 8;
-
-/// One pixel of a tile in a pass.
-#[derive(Debug, Clone, Copy)]
-pub struct TilePixel {
-    /// Column in the picture.
-    pub column: u32,
-    /// Row in the picture.
-    pub row: u32,
-    /// Index in the tile's arrays.
-    pub place: u32,
-}
-
-/// What the cache knows of a pixel's first camera ray.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum CachedHit {
-    /// Not traced yet.
-    Unknown,
-    /// It left the scene.
-    Miss,
-    /// It hit.
-    Hit(Hit),
-}
-
-/// A rectangle of pixels with everything that is kept of them between passes.
+/// A rectangle of pixels with everything that is kept of them between passes, listed block by block
+/// ([`Sites`]).
 #[derive(Debug)]
 pub struct Tile {
     /// Column of the left edge.
@@ -46,46 +22,57 @@ pub struct Tile {
     pub width: u32,
     /// Rows, at most [`TILE_SIZE`].
     pub height: u32,
-    /// Sums of linear samples, row by row.
-    pub sums: Vec<LinearRgb>,
     /// Samples in every sum; the first may be partly there, see `first_stride`.
     pub samples: u32,
     /// If previews were rendered: sums of pixels whose column and row are multiples of this hold the
-    /// first sample already.
+    /// first sample already. Other sums hold anything before `samples` is 1.
     pub first_stride: Option<u32>,
-    /// Hits of the first samples.
-    pub hits: Vec<CachedHit>,
     /// Counts since the snapshot was taken.
     pub counters: Counters,
+    /// Pixels of a full pass.
+    inside: Places,
+    /// Sums of linear samples.
+    sums: Box<Column3>,
+    /// Hits of the first samples of pixels whose column and row are multiples of `known`.
+    hits: Box<HitLanes<PLACES>>,
+    known: Option<u32>,
 }
 
 impl Tile {
     /// An empty tile.
     #[must_use]
     pub fn new(x0: u32, y0: u32, width: u32, height: u32) -> Self {
-        let count = width as usize * height as usize;
         Self {
             x0,
             y0,
             width,
             height,
-            sums: vec![LinearRgb::BLACK; count],
             samples: 0,
             first_stride: None,
-            hits: vec![CachedHit::Unknown; count],
             counters: Counters::default(),
+            inside: Sites::all().places(|x, y| x < width && y < height),
+            sums: Box::new([Column::splat(0.0); 3]),
+            hits: Box::new(HitLanes::none()),
+            known: None,
         }
     }
 
     /// Forgets the picture; and the hits too, unless they are still true.
     pub fn reset(&mut self, keep_hits: bool) {
-        self.sums.fill(LinearRgb::BLACK);
         self.samples = 0;
         self.first_stride = None;
         self.counters = Counters::default();
         if !keep_hits {
-            self.hits.fill(CachedHit::Unknown);
+            self.known = None;
         }
+    }
+
+    /// Sum of the samples of the pixel in column `x` and row `y` of the tile.
+    #[must_use]
+    pub fn sum(&self, x: u32, y: u32) -> LinearRgb {
+        let place = film_place(x, y) as usize;
+        let [r, g, b] = &*self.sums;
+        LinearRgb::new(r.0[place], g.0[place], b.0[place])
     }
 
     /// Whether a preview of this stride would show anything new.
@@ -106,130 +93,119 @@ impl Tile {
         self.samples += 1;
     }
 
-    /// Lists the pixels that a pass renders, in blocks of 8×8 so that 64 rays in a row are neighbours.
-    fn list_pixels(&self, index: u32, stride: u32, pixels: &mut Vec<TilePixel>) {
-        let done = if index == 0 { self.first_stride } else { None };
-        let is_done = |column: u32, row: u32| {
-            done.is_some_and(|d| column.is_multiple_of(d) && row.is_multiple_of(d))
-        };
-        let block = BLOCK_SIZE * stride;
-        pixels.clear();
-        for y_block in (0..self.height).step_by(block as usize) {
-            for x_block in (0..self.width).step_by(block as usize) {
-                let (y_end, x_end) = (
-                    (y_block + block).min(self.height),
-                    (x_block + block).min(self.width),
-                );
-                for y in (y_block..y_end).step_by(stride as usize) {
-                    for x in (x_block..x_end).step_by(stride as usize) {
-                        let (column, row) = (self.x0 + x, self.y0 + y);
-                        if !is_done(column, row) {
-                            pixels.push(TilePixel {
-                                column,
-                                row,
-                                place: y * self.width + x,
-                            });
-                        }
-                    }
-                }
-            }
-        }
-    }
-
     fn shade(&mut self, frame: &Frame<'_>, index: u32, stride: u32, scratch: &mut Scratch) {
         let mut counters = Counters::default();
-        let mut pixels = std::mem::take(&mut scratch.pixels);
-        self.list_pixels(index, stride, &mut pixels);
-        scratch.queue.clear();
-        for (slot, pixel) in pixels.iter().enumerate() {
-            let [sx, sy] = pixel_sample([pixel.column, pixel.row], index);
-            let dir = frame
-                .camera
-                .direction(pixel.column as f32 + sx, pixel.row as f32 + sy);
-            scratch.queue.push(
-                Ray {
-                    origin: frame.camera.origin,
-                    dir,
-                },
-                slot as u32,
-                1.0,
-            );
-        }
-        scratch.radiance.clear();
-        scratch.radiance.resize(pixels.len(), LinearRgb::BLACK);
+        let sites = Sites::of_stride(stride);
+        let active = self.pixels(sites, index);
+        let corner = [self.x0, self.y0];
+        camera::camera_rays(
+            frame,
+            sites,
+            corner,
+            (active, index),
+            &mut scratch.work.rays,
+        );
+        scratch.work.radiance = [Column::splat(0.0); 3];
         if index == 0 {
-            self.first_hits(frame, &pixels, scratch, &mut counters);
+            self.first_hits(frame, sites, stride, scratch, &mut counters);
         } else {
-            counters.camera_rays += scratch.queue.rays.len() as u64;
-            stages::trace_queue(frame, scratch, &mut counters);
+            counters.camera_rays += active.count();
+            trace::closest_hits(frame, &scratch.work.rays, &mut scratch.hits, &mut counters);
         }
-        walk(frame, scratch, &mut counters);
-        for (pixel, &sample) in pixels.iter().zip(&scratch.radiance) {
-            if sample.is_finite() {
-                self.sums[pixel.place as usize] += sample;
-            } else {
-                counters.non_finite += 1;
-            }
-        }
+        let mirrors = stages::mirrors_at(frame, 0);
+        scratch
+            .work
+            .shade_hits(frame, &scratch.hits, mirrors, &mut counters);
+        scratch.follow_mirrors(frame, &mut counters);
+        self.add(sites, &active, index, &scratch.work.radiance, &mut counters);
         self.counters += counters;
-        scratch.pixels = pixels;
+    }
+
+    /// The places of the pixels that still want sample `index`.
+    fn pixels(&self, sites: &Sites, index: u32) -> Places {
+        let done = if index == 0 { self.first_stride } else { None };
+        if sites.count == PLACES && done.is_none() {
+            return self.inside;
+        }
+        sites.places(|x, y| {
+            let is_done = done.is_some_and(|d| x.is_multiple_of(d) && y.is_multiple_of(d));
+            x < self.width && y < self.height && !is_done
+        })
     }
 
     /// Hits of the first samples: from the cache where it knows them, else traced and remembered.
     fn first_hits(
         &mut self,
         frame: &Frame<'_>,
-        pixels: &[TilePixel],
+        sites: &Sites,
+        stride: u32,
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) {
-        let Scratch {
-            queue,
-            next,
-            t_max,
-            hits,
-            ..
-        } = scratch;
-        next.clear();
-        for (slot, pixel) in pixels.iter().enumerate() {
-            if self.hits[pixel.place as usize] == CachedHit::Unknown {
-                next.push(queue.rays[slot], slot as u32, 1.0);
+        let Scratch { hits, work } = scratch;
+        let rays = &mut work.rays;
+        let known = match self.known {
+            None => Places::EMPTY,
+            Some(known) if known <= stride => rays.active,
+            Some(known) => {
+                let known = sites.places(|x, y| x.is_multiple_of(known) && y.is_multiple_of(known));
+                known & rays.active
+            }
+        };
+        let unknown = rays.active & !known;
+        if !unknown.is_empty() {
+            for place in known.iter() {
+                rays.lanes.t_max.0[place] = -1.0;
+            }
+            counters.camera_rays += unknown.count();
+            trace::closest_hits(frame, rays, hits, counters);
+        }
+        if sites.count == PLACES && unknown == self.inside {
+            self.hits.clone_from(hits);
+        } else if sites.count == PLACES && known == self.inside {
+            hits.clone_from(&self.hits);
+        } else {
+            for place in unknown.iter() {
+                copy_hit(
+                    hits,
+                    place,
+                    &mut self.hits,
+                    sites.film_place.0[place] as usize,
+                );
+            }
+            for place in known.iter() {
+                copy_hit(&self.hits, sites.film_place.0[place] as usize, hits, place);
             }
         }
-        counters.camera_rays += next.rays.len() as u64;
-        trace::closest_hits(frame, &next.rays, t_max, hits, counters);
-        for (hit, &slot) in hits.iter().zip(&next.slots) {
-            self.hits[pixels[slot as usize].place as usize] =
-                hit.map_or(CachedHit::Miss, CachedHit::Hit);
+        self.known = Some(self.known.map_or(stride, |known| known.min(stride)));
+    }
+
+    /// Adds samples to the film.
+    fn add(
+        &mut self,
+        sites: &Sites,
+        active: &Places,
+        index: u32,
+        radiance: &Column3,
+        counters: &mut Counters,
+    ) {
+        let before = if index == 0 { 0.0 } else { 1.0 };
+        for place in active.iter() {
+            let sample = [0, 1, 2].map(|channel: usize| radiance[channel].0[place]);
+            let is_finite = sample.iter().all(|x| x.is_finite());
+            counters.non_finite += u64::from(!is_finite);
+            let film_place = sites.film_place.0[place] as usize;
+            for (sum, x) in self.sums.iter_mut().zip(sample) {
+                let sum = &mut sum.0[film_place];
+                let sample = if is_finite { x } else { 0.0 };
+                *sum = if before == 0.0 { sample } else { *sum + sample };
+            }
         }
-        hits.clear();
-        hits.extend(
-            pixels
-                .iter()
-                .map(|pixel| match self.hits[pixel.place as usize] {
-                    CachedHit::Hit(hit) => Some(hit),
-                    CachedHit::Miss | CachedHit::Unknown => None,
-                }),
-        );
     }
 }
 
-/// Walks the queue whose first hits are known through all bounces: a queue per bounce, no recursion.
-fn walk(frame: &Frame<'_>, scratch: &mut Scratch, counters: &mut Counters) {
-    for bounce in 0..=frame.max_bounces {
-        let mirrors = if bounce == frame.max_bounces {
-            Mirrors::End
-        } else {
-            Mirrors::Follow
-        };
-        if bounce > 0 {
-            counters.mirror_rays += scratch.queue.rays.len() as u64;
-            stages::trace_queue(frame, scratch, counters);
-        }
-        stages::shade_hits(frame, mirrors, scratch, counters);
-        if scratch.next.rays.is_empty() {
-            break;
-        }
-        std::mem::swap(&mut scratch.queue, &mut scratch.next);
-    }
+fn copy_hit(from: &HitLanes<PLACES>, at: usize, to: &mut HitLanes<PLACES>, place: usize) {
+    to.prim.0[place] = from.prim.0[at];
+    to.u.0[place] = from.u.0[at];
+    to.v.0[place] = from.v.0[at];
 }

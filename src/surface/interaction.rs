@@ -1,28 +1,28 @@
 //! The full record of a surface point.
 
-use glam::{Vec2, Vec3};
+use crate::math::{V2, V3};
 
-/// A hit point with what its material needs, in internal units.
+/// A hit point with what its material needs, in internal units; with vector lanes, one for each.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SurfaceInteraction {
+pub struct SurfaceInteraction<F = f32> {
     /// The point, from barycentrics.
-    pub p: Vec3,
+    pub p: V3<F>,
     /// Bound on the rounding of `p`, per axis.
-    pub p_error: Vec3,
+    pub p_error: V3<F>,
     /// The triangle's unit normal, on the side of the smooth normal (the front).
-    pub n_geo: Vec3,
+    pub n_geo: V3<F>,
     /// Unit shading normal on the front side: interpolated, then perturbed by the mapping.
-    pub n_shade: Vec3,
+    pub n_shade: V3<F>,
     /// Unit direction to the eye.
-    pub wo: Vec3,
+    pub wo: V3<F>,
     /// Texture coordinate, v up; moved by parallax methods.
-    pub uv: Vec2,
+    pub uv: V2<F>,
     /// Surface gradient of u, perpendicular to the smooth normal: texture units per internal unit.
-    pub grad_u: Vec3,
+    pub grad_u: V3<F>,
     /// Surface gradient of v.
-    pub grad_v: Vec3,
+    pub grad_v: V3<F>,
     /// Direction of growing u on the triangle (derivative of position by u up to a positive factor).
-    pub dp_du: Vec3,
+    pub dp_du: V3<F>,
     /// `+1`, or `−1` where the texture is mirrored, or 0 where it has no area.
-    pub handedness: f32,
+    pub handedness: F,
 }

@@ -1,8 +1,10 @@
 //! A hit point in full, and what the maps do to it.
 
+mod facet;
 mod hit_point;
 mod interaction;
 pub mod mapping;
 
-pub use hit_point::{SurfaceParts, surface_at, uv_at};
+pub use facet::{Facet, FacetKind};
+pub use hit_point::{SurfaceParts, surface_at, surface_on, uv_at};
 pub use interaction::SurfaceInteraction;

@@ -3,6 +3,7 @@
 use glam::Vec2;
 
 use super::{MapSlot, Wrap};
+use crate::math::{Real, V2};
 
 /// `st = uv · scale + offset`: s to the right and t downwards across the picture.
 ///
@@ -38,7 +39,8 @@ impl Addressing {
 
     /// Place on the picture of a surface point's `uv`.
     #[must_use]
-    pub fn st(&self, uv: Vec2) -> Vec2 {
-        uv * self.scale + self.offset
+    #[inline(always)]
+    pub fn st<F: Real>(&self, uv: V2<F>) -> V2<F> {
+        uv.times(self.scale).plus(self.offset)
     }
 }

@@ -2,10 +2,8 @@
 
 use std::sync::LazyLock;
 
-use glam::Vec2;
-
 use super::{Grid, RawImage, Samples, Wrap};
-use crate::math::{LinearRgb, linear_from_srgb};
+use crate::math::{Bits as _, LinearRgb, Real, V2, linear_from_srgb};
 
 /// Colours of a surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,13 +49,19 @@ impl ColorMap {
 
     /// Bilinear linear colour at `st` (see [`Grid::cell`]).
     #[must_use]
-    pub fn sample(&self, st: Vec2, wrap: Wrap) -> LinearRgb {
+    #[inline(always)]
+    pub fn sample<F: Real>(&self, st: V2<F>, wrap: Wrap) -> LinearRgb<F> {
         match self {
             Self::Srgb8(g) => {
                 let lut = &*LINEAR_FROM_BYTE;
-                LinearRgb::from(g.mix3(st, wrap, |t, c| lut[usize::from(t[c])]))
+                let linear = |byte: u8| lut[usize::from(byte)].to_bits();
+                let bits = |[r, g, b, _]: [u8; 4]| [linear(r), linear(g), linear(b)];
+                LinearRgb::from(g.mix(&g.cell(st, wrap), bits, reals::<F>))
             }
-            Self::Linear(g) => LinearRgb::from(g.mix3(st, wrap, |t, c| t[c])),
+            Self::Linear(g) => {
+                let bits = |[r, g, b]: [f32; 3]| [r.to_bits(), g.to_bits(), b.to_bits()];
+                LinearRgb::from(g.mix(&g.cell(st, wrap), bits, reals::<F>))
+            }
         }
     }
 
@@ -69,4 +73,10 @@ impl ColorMap {
             Self::Linear(g) => size_of_val(g.texels()),
         }
     }
+}
+
+/// Floats whose representations were fetched.
+#[inline(always)]
+pub(super) fn reals<F: Real>([x, y, z]: [F::Bits; 3]) -> [F; 3] {
+    [x.to_real(), y.to_real(), z.to_real()]
 }

@@ -1,8 +1,7 @@
 //! A rectangle of texels and the address arithmetic of bilinear look-ups.
 
-use glam::Vec2;
-
 use super::Wrap;
+use crate::math::{Bits, Real, V2};
 
 /// `width · height` texels, row 0 on top.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,15 +11,15 @@ pub struct Grid<T> {
     texels: Vec<T>,
 }
 
-/// Four texel indices around a point and its place between them.
+/// Four texel indices around a point and its place between them; with vector lanes, for each.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BilinearCell {
+pub struct BilinearCell<F: Real = f32> {
     /// Indices of the texels at (column, row) = (i, j), (i+1, j), (i, j+1), (i+1, j+1).
-    pub texels: [u32; 4],
+    pub texels: [F::Bits; 4],
     /// Fraction towards column i+1, in `[0, 1)`.
-    pub fx: f32,
+    pub fx: F,
     /// Fraction towards row j+1, in `[0, 1)`.
-    pub fy: f32,
+    pub fy: F,
 }
 
 impl<T: Copy> Grid<T> {
@@ -71,6 +70,7 @@ impl<T: Copy> Grid<T> {
     }
 
     /// The texel with a linear index from [`cell`](Self::cell).
+    #[inline(always)]
     pub(super) fn texel(&self, index: u32) -> T {
         self.texels[index as usize]
     }
@@ -78,82 +78,99 @@ impl<T: Copy> Grid<T> {
     /// Where `st` falls: s to the right and t downwards, both 0…1 across the picture, texel centres at
     /// `(i + ½) / size`. Non-finite coordinates count as 0.
     #[must_use]
-    #[inline]
-    pub fn cell(&self, st: Vec2, wrap: Wrap) -> BilinearCell {
+    #[inline(always)]
+    pub fn cell<F: Real>(&self, st: V2<F>, wrap: Wrap) -> BilinearCell<F> {
         let (i0, i1, fx) = wrap.neighbours(st.x, self.width);
         let (j0, j1, fy) = wrap.neighbours(st.y, self.height);
-        let (row0, row1) = (j0 * self.width, j1 * self.width);
+        let (row0, row1) = (j0.times(self.width), j1.times(self.width));
         BilinearCell {
-            texels: [row0 + i0, row0 + i1, row1 + i0, row1 + i1],
+            texels: [
+                row0.plus_each(i0),
+                row0.plus_each(i1),
+                row1.plus_each(i0),
+                row1.plus_each(i1),
+            ],
             fx,
             fy,
         }
     }
-}
 
-impl<T: Copy> Grid<T> {
-    /// Bilinear means of the first three channels at `st`.
-    pub(super) fn mix3(
+    /// Bilinear means of `N` channels. `decode` takes 32 bits apart that `bits` makes of a texel.
+    #[inline(always)]
+    pub(super) fn mix<F: Real, const N: usize, const B: usize>(
         &self,
-        st: Vec2,
-        wrap: Wrap,
-        channel: impl Fn(&T, usize) -> f32,
-    ) -> [f32; 3] {
-        let cell = self.cell(st, wrap);
-        let texels = cell.texels.map(|i| self.texel(i));
-        [0, 1, 2].map(|c| cell.mix([0, 1, 2, 3].map(|i: usize| channel(&texels[i], c))))
+        cell: &BilinearCell<F>,
+        bits: impl Fn(T) -> [u32; B],
+        decode: impl Fn([F::Bits; B]) -> [F; N],
+    ) -> [F; N] {
+        let [a, b, c, d] = self.corners(cell, bits, decode);
+        let mut mixed = a;
+        for n in 0..N {
+            mixed[n] = cell.mix([a[n], b[n], c[n], d[n]]);
+        }
+        mixed
+    }
+
+    /// The channels of the four corners.
+    #[inline(always)]
+    pub(super) fn corners<F: Real, const N: usize, const B: usize>(
+        &self,
+        cell: &BilinearCell<F>,
+        bits: impl Fn(T) -> [u32; B],
+        decode: impl Fn([F::Bits; B]) -> [F; N],
+    ) -> [[F; N]; 4] {
+        let [a, b, c, d] = cell.texels;
+        let fetch = |index| bits(self.texel(index));
+        [
+            decode(a.gather(&fetch)),
+            decode(b.gather(&fetch)),
+            decode(c.gather(&fetch)),
+            decode(d.gather(&fetch)),
+        ]
     }
 }
 
 impl Wrap {
     /// The two texels around coordinate `c` (0…1 across `n` texels) and the fraction between them.
-    pub(super) fn neighbours(self, c: f32, n: u32) -> (u32, u32, f32) {
-        let c = if c.is_finite() { c } else { 0.0 };
-        match self {
+    ///
+    /// Worked out in whole floats, which are exact up to 2²⁴ texels a line.
+    #[inline(always)]
+    pub(super) fn neighbours<F: Real>(self, c: F, n: u32) -> (F::Bits, F::Bits, F) {
+        let zero = c.splat(0.0);
+        let c = F::select(c.is_finite(), c, zero);
+        let (count, last) = (n as f32, (n - 1) as f32);
+        let turned = match self {
             // Taking off whole turns first is exact and keeps the fraction's precision.
-            Self::Repeat => {
-                let x = (c - floor(c)) * n as f32 - 0.5;
-                let below = floor(x);
-                let i = below as i32;
-                let i0 = if i < 0 { n - 1 } else { (i as u32).min(n - 1) };
-                let i1 = if i0 + 1 == n { 0 } else { i0 + 1 };
-                (i0, i1, x - below)
+            Self::Repeat => c - c.floor(),
+            Self::Clamp => c.larger(c.splat(-1.0)).smaller(c.splat(2.0)),
+            Self::Mirror => c - (c * 0.5).floor() * 2.0,
+        };
+        let x = turned * count - 0.5;
+        let below = x.floor();
+        let above = below + 1.0;
+        let (count, last) = (c.splat(count), c.splat(last));
+        let within = |i: F| i.larger(zero).smaller(last);
+        let (first, second) = match self {
+            Self::Repeat => (
+                F::select(below.lt(zero), last, below.smaller(last)),
+                F::select(above.lt(count), above, zero),
+            ),
+            Self::Clamp => (within(below), within(above)),
+            // Between 0 and 2n; the second copy runs backwards.
+            Self::Mirror => {
+                let mirrored = |i: F| F::select(i.lt(count), i, count + count - i - 1.0);
+                (within(mirrored(below)), within(mirrored(above)))
             }
-            Self::Clamp | Self::Mirror => {
-                let c = if self == Self::Clamp {
-                    c.clamp(-1.0, 2.0)
-                } else {
-                    c - 2.0 * (c * 0.5).floor()
-                };
-                let x = c * n as f32 - 0.5;
-                let floor = x.floor();
-                let i = floor as i64;
-                (self.index(i, n), self.index(i + 1, n), x - floor)
-            }
-        }
+        };
+        (first.to_index(), second.to_index(), x - below)
     }
 }
 
-/// The largest whole number not above `x`, without a call into the C library on processors older than
-/// SSE 4.1, which is what a portable build is compiled for.
-fn floor(x: f32) -> f32 {
-    // From 2²³ on every float is whole.
-    if x.abs() < 8_388_608.0 {
-        let toward_zero = x as i32 as f32;
-        if toward_zero > x {
-            toward_zero - 1.0
-        } else {
-            toward_zero
-        }
-    } else {
-        x
-    }
-}
-
-impl BilinearCell {
+impl<F: Real> BilinearCell<F> {
     /// The bilinear mean of four corner values in the order of `texels`.
     #[must_use]
-    pub fn mix(&self, [a, b, c, d]: [f32; 4]) -> f32 {
+    #[inline(always)]
+    pub fn mix(&self, [a, b, c, d]: [F; 4]) -> F {
         let top = a + (b - a) * self.fx;
         let bottom = c + (d - c) * self.fx;
         top + (bottom - top) * self.fy
@@ -161,9 +178,10 @@ impl BilinearCell {
 
     /// Derivatives of [`mix`](Self::mix) per texel, to the right and downwards.
     #[must_use]
-    pub fn slope_per_texel(&self, [a, b, c, d]: [f32; 4]) -> Vec2 {
+    #[inline(always)]
+    pub fn slope_per_texel(&self, [a, b, c, d]: [F; 4]) -> V2<F> {
         let right = (b - a) + ((d - c) - (b - a)) * self.fy;
         let down = (c - a) + ((d - b) - (c - a)) * self.fx;
-        Vec2::new(right, down)
+        V2::new(right, down)
     }
 }

@@ -2,7 +2,9 @@
 
 use glam::Vec2;
 
+use super::grid::BilinearCell;
 use super::{Channel, Grid, RawImage, Samples, Wrap};
+use crate::math::{Bits as _, Real, V2};
 
 /// One number a texel. Integers stay `u16` in memory (8-bit ones are spread to 16), behind one accessor.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,11 +17,11 @@ pub enum HeightMap {
 
 /// A height and its derivatives across the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HeightSlope {
+pub struct HeightSlope<F = f32> {
     /// Stored height, 0…1 for integer files.
-    pub height: f32,
+    pub height: F,
     /// Change per picture width to the right (s) and per picture height downwards (t).
-    pub slope_st: Vec2,
+    pub slope_st: V2<F>,
 }
 
 impl HeightMap {
@@ -83,36 +85,21 @@ impl HeightMap {
 
     /// Bilinear value at `st` (see [`Grid::cell`]).
     #[must_use]
-    pub fn sample(&self, st: Vec2, wrap: Wrap) -> f32 {
-        match self {
-            Self::U16(g) => {
-                let cell = g.cell(st, wrap);
-                cell.mix(cell.texels.map(|i| fraction(g.texel(i))))
-            }
-            Self::F32(g) => {
-                let cell = g.cell(st, wrap);
-                cell.mix(cell.texels.map(|i| g.texel(i)))
-            }
-        }
+    #[inline(always)]
+    pub fn sample<F: Real>(&self, st: V2<F>, wrap: Wrap) -> F {
+        let (cell, corners) = self.corners(st, wrap);
+        cell.mix(corners)
     }
 
     /// Bilinear value and its analytic derivative: exact for the bilinear surface, discontinuous at
     /// texel lines.
     #[must_use]
-    pub fn sample_slope(&self, st: Vec2, wrap: Wrap) -> HeightSlope {
-        let (cell, corners) = match self {
-            Self::U16(g) => {
-                let cell = g.cell(st, wrap);
-                (cell, cell.texels.map(|i| fraction(g.texel(i))))
-            }
-            Self::F32(g) => {
-                let cell = g.cell(st, wrap);
-                (cell, cell.texels.map(|i| g.texel(i)))
-            }
-        };
+    #[inline(always)]
+    pub fn sample_slope<F: Real>(&self, st: V2<F>, wrap: Wrap) -> HeightSlope<F> {
+        let (cell, corners) = self.corners(st, wrap);
         HeightSlope {
             height: cell.mix(corners),
-            slope_st: cell.slope_per_texel(corners) * self.size(),
+            slope_st: cell.slope_per_texel(corners).times(self.size()),
         }
     }
 
@@ -121,12 +108,29 @@ impl HeightMap {
     /// Differences of the bilinear height one texel to either side equal the bilinear interpolation of
     /// the texels' own central differences.
     #[must_use]
-    pub fn central_slope(&self, st: Vec2, wrap: Wrap) -> Vec2 {
+    #[inline(always)]
+    pub fn central_slope<F: Real>(&self, st: V2<F>, wrap: Wrap) -> V2<F> {
         let size = self.size();
         let (ds, dt) = (Vec2::new(1.0 / size.x, 0.0), Vec2::new(0.0, 1.0 / size.y));
-        let right = self.sample(st + ds, wrap) - self.sample(st - ds, wrap);
-        let down = self.sample(st + dt, wrap) - self.sample(st - dt, wrap);
-        Vec2::new(right, down) * 0.5 * size
+        let right = self.sample(st.plus(ds), wrap) - self.sample(st.plus(-ds), wrap);
+        let down = self.sample(st.plus(dt), wrap) - self.sample(st.plus(-dt), wrap);
+        V2::new(right, down).times(size * 0.5)
+    }
+
+    /// The cell that `st` falls into and the values at its corners.
+    #[inline(always)]
+    fn corners<F: Real>(&self, st: V2<F>, wrap: Wrap) -> (BilinearCell<F>, [F; 4]) {
+        let (cell, [[a], [b], [c], [d]]) = match self {
+            Self::U16(g) => {
+                let cell = g.cell(st, wrap);
+                (cell, g.corners(&cell, |x| [u32::from(x)], fractions))
+            }
+            Self::F32(g) => {
+                let cell = g.cell(st, wrap);
+                (cell, g.corners(&cell, |x| [x.to_bits()], reals))
+            }
+        };
+        (cell, [a, b, c, d])
     }
 
     fn size(&self) -> Vec2 {
@@ -136,6 +140,18 @@ impl HeightMap {
 
 fn fraction(stored: u16) -> f32 {
     f32::from(stored) * (1.0 / 65_535.0)
+}
+
+/// [`fraction`] of numbers that were fetched.
+#[inline(always)]
+fn fractions<F: Real>([stored]: [F::Bits; 1]) -> [F; 1] {
+    [stored.signed_to_real() * (1.0 / 65_535.0)]
+}
+
+/// Floats whose representations were fetched.
+#[inline(always)]
+fn reals<F: Real>([bits]: [F::Bits; 1]) -> [F; 1] {
+    [bits.to_real()]
 }
 
 fn channel_value(image: &RawImage, x: u32, y: u32, channel: Channel) -> f32 {

@@ -1,8 +1,8 @@
 //! Tangent-space normals and slopes: raw numbers, never sRGB-decoded.
 
-use glam::{Vec2, Vec3};
-
+use super::color_map::reals;
 use super::{Grid, RawImage, Samples, Wrap};
+use crate::math::{Bits as _, Real, V2, V3};
 
 /// Three numbers a texel, read as `2c − 1`.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,13 +48,24 @@ impl NormalMap {
 
     /// Bilinear `2c − 1` at `st`, not renormalised: x along +u, y along the stored green, z outwards.
     #[must_use]
-    pub fn sample(&self, st: Vec2, wrap: Wrap) -> Vec3 {
-        let stored = match self {
-            Self::U8(g) => Vec3::from(g.mix3(st, wrap, |t, c| f32::from(t[c]))) * (1.0 / 255.0),
-            Self::U16(g) => Vec3::from(g.mix3(st, wrap, |t, c| f32::from(t[c]))) * (1.0 / 65_535.0),
-            Self::F32(g) => Vec3::from(g.mix3(st, wrap, |t, c| t[c])),
+    #[inline(always)]
+    pub fn sample<F: Real>(&self, st: V2<F>, wrap: Wrap) -> V3<F> {
+        let ([x, y, z], factor) = match self {
+            Self::U8(g) => {
+                let bits = |texel| [u32::from_le_bytes(texel)];
+                (g.mix(&g.cell(st, wrap), bits, bytes::<F>), 2.0 / 255.0)
+            }
+            Self::U16(g) => {
+                let bits =
+                    |[x, y, z, _]: [u16; 4]| [u32::from(x) | u32::from(y) << 16, u32::from(z)];
+                (g.mix(&g.cell(st, wrap), bits, words::<F>), 2.0 / 65_535.0)
+            }
+            Self::F32(g) => {
+                let bits = |[x, y, z]: [f32; 3]| [x.to_bits(), y.to_bits(), z.to_bits()];
+                (g.mix(&g.cell(st, wrap), bits, reals::<F>), 2.0)
+            }
         };
-        stored * 2.0 - Vec3::ONE
+        V3::new(x * factor - 1.0, y * factor - 1.0, z * factor - 1.0)
     }
 
     /// Heap bytes.
@@ -66,4 +77,24 @@ impl NormalMap {
             Self::F32(g) => size_of_val(g.texels()),
         }
     }
+}
+
+/// Three bytes, the lowest first.
+#[inline(always)]
+fn bytes<F: Real>([xyz]: [F::Bits; 1]) -> [F; 3] {
+    [
+        xyz.and(0xff).signed_to_real(),
+        xyz.shr(8).and(0xff).signed_to_real(),
+        xyz.shr(16).and(0xff).signed_to_real(),
+    ]
+}
+
+/// Three 16-bit words, the lowest first.
+#[inline(always)]
+fn words<F: Real>([xy, z]: [F::Bits; 2]) -> [F; 3] {
+    [
+        xy.and(0xffff).signed_to_real(),
+        xy.shr(16).signed_to_real(),
+        z.signed_to_real(),
+    ]
 }

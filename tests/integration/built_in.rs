@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec3, Vec2, Vec3};
 use reliefscope::geometry::Normalization;
+use reliefscope::math::V2;
 use reliefscope::scene::built_in::maps::{Dual, MapSet, Relief, bake};
 use reliefscope::scene::built_in::{SCENES, built_in, default_name, meshes};
 use reliefscope::scene::load::LoadOptions;
@@ -319,13 +320,13 @@ fn normal_map_agrees_with_the_stored_heights() {
     let slot = reliefscope::texture::MapSlot::new(0, MapRole::Height);
     let address = Addressing::from_slot(&slot);
     for (u, v) in places(500) {
-        let st = address.st(Vec2::new(u as f32, v as f32));
+        let st = address.st(V2::new(u as f32, v as f32));
         let slope = images[0]
             .height(Channel::Luma)
             .central_slope(st, address.wrap);
-        let by_uv = slope * address.scale * relief.amplitude() as f32;
+        let by_uv = Vec2::from(slope) * address.scale * relief.amplitude() as f32;
         let from_heights = Vec3::new(-by_uv.x, -by_uv.y, 1.0);
-        let from_normals = images[1].normal().sample(st, address.wrap);
+        let from_normals = Vec3::from(images[1].normal().sample(st, address.wrap));
         let angle = from_heights.angle_between(from_normals).to_degrees();
         assert!(angle < 0.6, "{angle} degrees apart at {u}, {v}");
     }

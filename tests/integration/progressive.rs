@@ -1,10 +1,15 @@
 //! Passes, previews and the hit cache: what may change when, and what never does.
 
 use std::f32::consts::TAU;
+use std::path::Path;
+use std::sync::Arc;
 
 use glam::DVec3;
+use reliefscope::geometry::simd::SimdLevel;
 use reliefscope::math::LinearRgb;
 use reliefscope::render::{PassEnd, Progressive, Snapshot, probe};
+use reliefscope::scene::load::LoadOptions;
+use reliefscope::scene::open;
 use reliefscope::shading::{Light, LightKind};
 use reliefscope::surface::mapping::Method;
 use reliefscope::texture::MapRole;
@@ -35,6 +40,37 @@ fn any_thread_count_gives_the_same_bits() {
             bits(&converged(&snapshot, threads).picture()),
             "{threads} threads"
         );
+    }
+}
+
+/// The vector code of the stages against itself with four plain lanes, and so, as `probe` agrees with the
+/// film, against the code for one point.
+#[test]
+fn every_vector_level_gives_the_same_bits() {
+    for name in ["wall", "materials", "columns"] {
+        let loaded = open(Path::new(name), &LoadOptions::default()).expect("built in");
+        for method in Method::ALL {
+            let picture_at = |level| {
+                let mut scene = (*loaded.scene).clone();
+                scene.bvh = scene.bvh.with_level(level).expect("available");
+                let mut settings = loaded.settings.clone();
+                settings.mapping.method = method;
+                settings.samples = 2;
+                bits(&picture(&Snapshot {
+                    scene: Arc::new(scene),
+                    settings: Arc::new(settings),
+                    size: [75, 50],
+                }))
+            };
+            let plain = picture_at(SimdLevel::Scalar);
+            for level in SimdLevel::ALL.into_iter().filter(|l| l.is_available()) {
+                assert!(
+                    picture_at(level) == plain,
+                    "{name}, {}, {level}",
+                    method.name()
+                );
+            }
+        }
     }
 }
 

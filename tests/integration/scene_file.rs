@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec3;
-use reliefscope::math::{LinearRgb, hash_u32, unit_f32_from_bits};
+use reliefscope::math::{LinearRgb, hash, unit_interval};
 use reliefscope::scene::file::{SaveError, SceneView, apply_overrides, read_scene, write_scene};
 use reliefscope::scene::load::LoadOptions;
 use reliefscope::scene::save_picture::write_png;
@@ -104,10 +104,10 @@ struct Random(u32);
 impl Random {
     fn bits(&mut self) -> u32 {
         self.0 = self.0.wrapping_add(0x9e37_79b9);
-        hash_u32(self.0)
+        hash(self.0)
     }
     fn unit(&mut self) -> f32 {
-        unit_f32_from_bits(self.bits())
+        unit_interval(self.bits())
     }
     fn flag(&mut self) -> bool {
         self.bits() & 1 == 1

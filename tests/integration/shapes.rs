@@ -4,7 +4,7 @@ use std::f32::consts::TAU;
 
 use glam::Vec3;
 use reliefscope::geometry::{Aabb, Ray, TriangleMesh};
-use reliefscope::math::{hash_u32, unit_f32_from_bits};
+use reliefscope::math::{hash, unit_interval};
 
 /// Random numbers from a counter.
 pub struct Random(u32);
@@ -16,12 +16,12 @@ impl Random {
 
     pub fn bits(&mut self) -> u32 {
         self.0 = self.0.wrapping_add(1);
-        hash_u32(self.0)
+        hash(self.0)
     }
 
     /// In `[0, 1)`.
     pub fn unit(&mut self) -> f32 {
-        unit_f32_from_bits(self.bits())
+        unit_interval(self.bits())
     }
 
     /// In `[-1, 1)` on each axis.

@@ -1,9 +1,9 @@
 //! An interval around all rays of a bundle.
 
 use super::{Bundle, lanes_of};
-use crate::geometry::simd::{Select, Simd, SimdBase, SimdMask, f32x8};
 use crate::geometry::slabs::PADDING;
 use crate::geometry::triangle::LANES;
+use crate::math::simd::{Select, Simd, SimdBase, SimdMask, f32x8};
 
 /// Lower and upper planes of eight boxes, `[lower, upper][axis]`.
 pub(in crate::geometry) type Boxes<S> = [[f32x8<S>; 3]; 2];

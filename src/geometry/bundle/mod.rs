@@ -12,10 +12,10 @@ mod watertight;
 
 use std::ops::Range;
 
-use super::Ray;
-use super::simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 use super::slabs::{MIN_COMPONENT, PADDING};
 use super::triangle::Axis;
+use super::{Ray, RayLanes};
+use crate::math::simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
 pub(super) use hull::{Boxes, Hull};
 pub(super) use watertight::{LaneHits, TriangleLanes};
@@ -30,47 +30,11 @@ const MAX_ORIGIN_SPREAD: f32 = 0.125;
 /// Coordinates that neither overflow nor vanish in the arithmetic of a bundle.
 const MAGNITUDES: Range<f32> = 1e-15..1e15;
 
-/// A number for each ray.
-#[derive(Debug, Clone, Copy)]
-#[repr(C, align(64))]
-pub(super) struct Lanes<T>(pub(super) [T; RAYS]);
+/// A value for each ray.
+pub(super) type Lanes<T> = crate::math::lanes::Lanes<T, RAYS>;
 
 /// A float for each ray.
 pub(super) type Floats = Lanes<f32>;
-
-impl<T: Copy> Lanes<T> {
-    /// The same for all.
-    pub(super) const fn splat(x: T) -> Self {
-        Self([x; RAYS])
-    }
-
-    /// The part of a group: `width` neighbours. Both must fit.
-    #[inline(always)]
-    pub(super) fn group(&self, group: usize, width: usize) -> &[T] {
-        // The remainder changes nothing; it lets the compiler see that the slice fits.
-        let first = group * width % RAYS;
-        &self.0[first..first + width]
-    }
-
-    /// [`Self::group`], to write to.
-    #[inline(always)]
-    pub(super) fn group_mut(&mut self, group: usize, width: usize) -> &mut [T] {
-        let first = group * width % RAYS;
-        &mut self.0[first..first + width]
-    }
-}
-
-impl Floats {
-    #[inline(always)]
-    pub(super) fn load<S: Simd>(&self, simd: S, group: usize) -> S::f32s {
-        S::f32s::from_slice(simd, self.group(group, S::f32s::LEN))
-    }
-
-    #[inline(always)]
-    pub(super) fn store<S: Simd>(&mut self, group: usize, x: S::f32s) {
-        x.store_slice(self.group_mut(group, S::f32s::LEN));
-    }
-}
 
 /// One vector from each of three arrays.
 #[inline(always)]
@@ -162,6 +126,18 @@ impl Bundle {
         for (lane, ray) in rays.iter().take(RAYS).enumerate() {
             (ox.0[lane], oy.0[lane], oz.0[lane]) = ray.origin.into();
             (dx.0[lane], dy.0[lane], dz.0[lane]) = ray.dir.into();
+        }
+    }
+
+    /// Takes 64 rays that lie side by side, from place `first` on.
+    #[inline(always)]
+    pub(super) fn load_lanes<const N: usize>(&mut self, rays: &RayLanes<N>, first: usize) {
+        let (place, width) = (first / RAYS, RAYS);
+        for axis in 0..3 {
+            let origin = rays.origin[axis].group(place, width);
+            self.origin[axis].0.copy_from_slice(origin);
+            let dir = rays.dir[axis].group(place, width);
+            self.dir[axis].0.copy_from_slice(dir);
         }
     }
 

@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 use super::{Bundle, Floats, load3};
-use crate::geometry::simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, SimdNarrow, SimdWiden};
 use crate::geometry::triangle::{edge, inside_in_f64, meet_plane, sheared};
+use crate::math::simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, SimdNarrow, SimdWiden};
 
 /// Rays of one group that meet a triangle, and where; other lanes hold anything.
 pub(in crate::geometry) struct LaneHits<S: Simd> {

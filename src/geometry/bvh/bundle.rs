@@ -5,8 +5,8 @@ use super::node::{Block, Child, NO_PRIM, Node};
 use super::single::push_sorted;
 use super::stack::Stack;
 use crate::geometry::bundle::{Boxes, Bundle, Floats, Hull, LaneHits, TriangleLanes};
-use crate::geometry::simd::{Simd, SimdBase, SimdMask, f32x8};
 use crate::geometry::triangle::{LANES, corners_of, take_lowest};
+use crate::math::simd::{Simd, SimdBase, SimdMask, f32x8};
 
 /// What a traversal is for; knows each ray's state.
 pub(super) trait Query {

@@ -7,9 +7,10 @@ use super::query::{AnyLanes, ClosestLanes, LaneQuery};
 use super::stack::Stack;
 use super::{Bvh, HitFilter};
 use crate::geometry::bundle::{Bundle, Floats, Hull, Lanes, RAYS, RaySet};
-use crate::geometry::simd::{Kernel, Simd, SimdBase, SimdMask};
-use crate::geometry::triangle::{Axis, TriangleTest};
-use crate::geometry::{Hit, Ray};
+use crate::geometry::triangle::{Axis, TriangleTest, Watertight};
+use crate::geometry::{Hit, HitLanes, NO_HIT, Ray, RayLanes};
+use crate::math::lanes::ones;
+use crate::math::simd::{Kernel, Simd, SimdBase, SimdMask};
 
 /// Fewer rays than this are traced one by one.
 const MIN_RAYS: u32 = 8;
@@ -32,14 +33,8 @@ impl Bvh {
         hits: &mut [Option<Hit>],
     ) {
         assert!(rays.len() == t_max.len() && rays.len() == hits.len());
-        let many = Many {
-            bvh: self,
-            rays,
-            t_max,
-            query: ClosestLanes::new(filter),
-            answers: &mut *hits,
-        };
-        if !(T::HAS_BUNDLES && self.level.run(many)) {
+        let query = ClosestLanes::new(filter);
+        if !(T::HAS_BUNDLES && self.run_many((rays, t_max), query, &mut *hits)) {
             for ((ray, &t_max), hit) in rays.iter().zip(t_max).zip(hits) {
                 *hit = self.intersect::<T, F>(ray, t_max, filter);
             }
@@ -58,43 +53,244 @@ impl Bvh {
         occluded: &mut [bool],
     ) {
         assert!(rays.len() == t_max.len() && rays.len() == occluded.len());
-        let many = Many {
-            bvh: self,
-            rays,
-            t_max,
-            query: AnyLanes::new(filter),
-            answers: &mut *occluded,
-        };
-        if !(T::HAS_BUNDLES && self.level.run(many)) {
+        let query = AnyLanes::new(filter);
+        if !(T::HAS_BUNDLES && self.run_many((rays, t_max), query, &mut *occluded)) {
             for ((ray, &t_max), occluded) in rays.iter().zip(t_max).zip(occluded) {
                 *occluded = self.occluded::<T, F>(ray, t_max, filter);
             }
         }
     }
+
+    /// [`Self::intersect`] with the watertight test for the rays in the first `count` places. `N` is a
+    /// multiple of 64.
+    pub fn intersect_lanes<F: HitFilter, const N: usize>(
+        &self,
+        rays: &RayLanes<N>,
+        count: usize,
+        filter: &F,
+        hits: &mut HitLanes<N>,
+    ) {
+        if !self.run_many(
+            Places { rays, count },
+            ClosestLanes::new(filter),
+            &mut *hits,
+        ) {
+            for place in 0..count.min(N) {
+                let (ray, t_max) = (rays.ray(place), rays.t_max.0[place]);
+                let hit = self.intersect::<Watertight, F>(&ray, t_max, filter);
+                put_hit(hits, place, hit);
+            }
+        }
+    }
+
+    /// [`Self::occluded`] with the watertight test for the rays in the first `count` places: bit `i` of
+    /// word `w` stands for place `64·w + i`. `N` is a multiple of 64.
+    ///
+    /// # Panics
+    /// If there are fewer words than blocks of 64 rays.
+    pub fn occluded_lanes<F: HitFilter, const N: usize>(
+        &self,
+        rays: &RayLanes<N>,
+        count: usize,
+        filter: &F,
+        occluded: &mut [u64],
+    ) {
+        assert!(occluded.len() * RAYS >= count.min(N), "a bit for each ray");
+        if !self.run_many(
+            Places { rays, count },
+            AnyLanes::new(filter),
+            &mut *occluded,
+        ) {
+            occluded.fill(0);
+            for place in 0..count.min(N) {
+                let (ray, t_max) = (rays.ray(place), rays.t_max.0[place]);
+                if self.occluded::<Watertight, F>(&ray, t_max, filter) {
+                    occluded[place / RAYS] |= 1 << (place % RAYS);
+                }
+            }
+        }
+    }
+
+    /// Says whether this tree's level has a kernel; if not, nothing was done.
+    fn run_many<R: RaySource, Q: LaneQuery, A: Answers<Q>>(
+        &self,
+        rays: R,
+        query: Q,
+        answers: A,
+    ) -> bool {
+        self.level.run(Many {
+            bvh: self,
+            rays,
+            query,
+            answers,
+        })
+    }
+}
+
+/// Where rays come from, in blocks of 64.
+trait RaySource {
+    /// How many there are, holes included.
+    fn count(&self) -> usize;
+    /// Copies the block that starts at `first`; ends beyond the last ray are not above 0.
+    fn load(&self, first: usize, bundle: &mut Bundle, t_max: &mut Floats);
+    /// One ray and its end.
+    fn ray(&self, place: usize) -> (Ray, f32);
+}
+
+impl RaySource for (&[Ray], &[f32]) {
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    #[inline(always)]
+    fn load(&self, first: usize, bundle: &mut Bundle, t_max: &mut Floats) {
+        let end = self.0.len().min(first + RAYS);
+        bundle.load(&self.0[first..end]);
+        let (ends, beyond) = t_max.0.split_at_mut(end - first);
+        ends.copy_from_slice(&self.1[first..end]);
+        beyond.fill(-1.0);
+    }
+
+    #[inline(always)]
+    fn ray(&self, place: usize) -> (Ray, f32) {
+        (self.0[place], self.1[place])
+    }
+}
+
+/// The first places of an array of rays.
+struct Places<'a, const N: usize> {
+    rays: &'a RayLanes<N>,
+    count: usize,
+}
+
+impl<const N: usize> RaySource for Places<'_, N> {
+    fn count(&self) -> usize {
+        self.count.min(N)
+    }
+
+    #[inline(always)]
+    fn load(&self, first: usize, bundle: &mut Bundle, t_max: &mut Floats) {
+        bundle.load_lanes(self.rays, first);
+        let ends = self.rays.t_max.group(first / RAYS, RAYS);
+        t_max.0.copy_from_slice(ends);
+        if self.count < first + RAYS {
+            t_max.0[self.count - first..].fill(-1.0);
+        }
+    }
+
+    #[inline(always)]
+    fn ray(&self, place: usize) -> (Ray, f32) {
+        (self.rays.ray(place), self.rays.t_max.0[place])
+    }
+}
+
+/// Where answers go.
+trait Answers<Q: LaneQuery> {
+    /// Answers "nothing" in the block of up to 64 that starts at `first`.
+    fn clear(&mut self, first: usize);
+    /// One answer.
+    fn put(&mut self, place: usize, answer: Q::Answer);
+    /// The answers of a bundle: those in `set`, places counted from `first`.
+    #[inline(always)]
+    fn put_bundle<S: Simd>(&mut self, _simd: S, first: usize, set: RaySet, query: &Q) {
+        for lane in ones(set) {
+            self.put(first + lane, query.answer(lane));
+        }
+    }
+}
+
+impl<F: HitFilter> Answers<ClosestLanes<'_, F>> for &mut [Option<Hit>] {
+    #[inline(always)]
+    fn clear(&mut self, first: usize) {
+        let end = self.len().min(first + RAYS);
+        self[first..end].fill(None);
+    }
+    #[inline(always)]
+    fn put(&mut self, place: usize, hit: Option<Hit>) {
+        self[place] = hit;
+    }
+}
+
+impl<F: HitFilter> Answers<AnyLanes<'_, F>> for &mut [bool] {
+    #[inline(always)]
+    fn clear(&mut self, first: usize) {
+        let end = self.len().min(first + RAYS);
+        self[first..end].fill(false);
+    }
+    #[inline(always)]
+    fn put(&mut self, place: usize, occluded: bool) {
+        self[place] = occluded;
+    }
+}
+
+impl<F: HitFilter, const N: usize> Answers<ClosestLanes<'_, F>> for &mut HitLanes<N> {
+    #[inline(always)]
+    fn clear(&mut self, first: usize) {
+        self.prim.group_mut(first / RAYS, RAYS).fill(NO_HIT);
+    }
+    #[inline(always)]
+    fn put(&mut self, place: usize, hit: Option<Hit>) {
+        put_hit(self, place, hit);
+    }
+    #[inline(always)]
+    fn put_bundle<S: Simd>(
+        &mut self,
+        simd: S,
+        first: usize,
+        set: RaySet,
+        query: &ClosestLanes<'_, F>,
+    ) {
+        query.write_hits(simd, set, self, first);
+    }
+}
+
+impl<F: HitFilter> Answers<AnyLanes<'_, F>> for &mut [u64] {
+    #[inline(always)]
+    fn clear(&mut self, first: usize) {
+        self[first / RAYS] = 0;
+    }
+    #[inline(always)]
+    fn put(&mut self, place: usize, occluded: bool) {
+        self[place / RAYS] |= u64::from(occluded) << (place % RAYS);
+    }
+    #[inline(always)]
+    fn put_bundle<S: Simd>(&mut self, simd: S, first: usize, set: RaySet, query: &AnyLanes<'_, F>) {
+        self[first / RAYS] |= set & query.done(simd);
+    }
+}
+
+/// Writes what one ray hit.
+#[inline(always)]
+fn put_hit<const N: usize>(hits: &mut HitLanes<N>, place: usize, hit: Option<Hit>) {
+    hits.prim.0[place] = hit.map_or(NO_HIT, |hit| hit.prim);
+    if let Some(hit) = hit {
+        hits.u.0[place] = hit.u;
+        hits.v.0[place] = hit.v;
+    }
 }
 
 /// The work of one call.
-struct Many<'a, Q: LaneQuery> {
+struct Many<'a, R, Q, A> {
     bvh: &'a Bvh,
-    rays: &'a [Ray],
-    t_max: &'a [f32],
+    rays: R,
     query: Q,
-    answers: &'a mut [Q::Answer],
+    answers: A,
 }
 
-impl<Q: LaneQuery> Kernel for Many<'_, Q> {
+impl<R: RaySource, Q: LaneQuery, A: Answers<Q>> Kernel for Many<'_, R, Q, A> {
     #[inline(always)]
     fn run<S: Simd>(mut self, simd: S) {
         let (mut bundle, mut stack) = (Bundle::new(), Stack::new());
-        let mut t_max = Lanes::splat(0.0);
-        for first in (0..self.rays.len()).step_by(RAYS) {
-            let end = self.rays.len().min(first + RAYS);
-            bundle.load(&self.rays[first..end]);
-            t_max.0[..end - first].copy_from_slice(&self.t_max[first..end]);
-            let all = RaySet::MAX >> (RAYS - (end - first));
-            let (mut alone, mut cuts) = (all, MAX_CUTS);
+        let mut t_max = Lanes::splat(-1.0);
+        for first in (0..self.rays.count()).step_by(RAYS) {
+            self.answers.clear(first);
+            self.rays.load(first, &mut bundle, &mut t_max);
+            let hopeful = above_zero(simd, &t_max);
+            if hopeful == 0 {
+                continue;
+            }
+            let (mut alone, mut cuts) = (hopeful, MAX_CUTS);
             let sets = bundle.by_axis(simd, self.bvh.reach);
-            let hopeful = all & above_zero(simd, &t_max);
             for (along, set) in [Axis::X, Axis::Y, Axis::Z].into_iter().zip(sets) {
                 let mut left = set & hopeful;
                 while left.count_ones() >= MIN_RAYS
@@ -109,12 +305,14 @@ impl<Q: LaneQuery> Kernel for Many<'_, Q> {
                     }
                 }
             }
-            self.trace_alone(first, alone, &mut stack);
+            if alone != 0 {
+                self.trace_alone(first, alone, &mut stack);
+            }
         }
     }
 }
 
-impl<Q: LaneQuery> Many<'_, Q> {
+impl<R: RaySource, Q: LaneQuery, A: Answers<Q>> Many<'_, R, Q, A> {
     /// Some of the rays in `set` that run alike; `None` once `cuts` are used up.
     #[inline(always)]
     fn alike<S: Simd>(
@@ -148,17 +346,13 @@ impl<Q: LaneQuery> Many<'_, Q> {
     ) {
         let bvh = self.bvh;
         let done = bvh.traverse_bundle(simd, bundle, hull, stack, &mut self.query);
-        let answers = &mut self.answers[first..];
         if done {
-            for (lane, answer) in answers.iter_mut().take(RAYS).enumerate() {
-                if set >> lane & 1 != 0 {
-                    *answer = self.query.answer(lane);
-                }
-            }
+            self.answers.put_bundle(simd, first, set, &self.query);
         } else {
-            for lane in lanes(set) {
-                let ray = &self.rays[first + lane];
-                answers[lane] = self.query.resume(bvh, stack, lane, ray);
+            for lane in ones(set) {
+                let (ray, _) = self.rays.ray(first + lane);
+                let answer = self.query.resume(bvh, stack, lane, &ray);
+                self.answers.put(first + lane, answer);
             }
         }
     }
@@ -166,9 +360,10 @@ impl<Q: LaneQuery> Many<'_, Q> {
     /// Traces the rays of `set` one by one.
     #[inline(never)]
     fn trace_alone(&mut self, first: usize, set: RaySet, stack: &mut Stack) {
-        for ray in lanes(set).map(|lane| first + lane) {
-            let (t_max, at) = (self.t_max[ray], &self.rays[ray]);
-            self.answers[ray] = self.query.alone(self.bvh, stack, at, t_max);
+        for place in ones(set).map(|lane| first + lane) {
+            let (ray, t_max) = self.rays.ray(place);
+            let answer = self.query.alone(self.bvh, stack, &ray, t_max);
+            self.answers.put(place, answer);
         }
     }
 }
@@ -183,13 +378,4 @@ fn above_zero<S: Simd>(simd: S, floats: &Floats) -> RaySet {
         set |= above << (group * S::f32s::LEN);
     }
     set
-}
-
-/// The places of the rays in a set.
-fn lanes(mut set: RaySet) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lane = set.trailing_zeros() as usize;
-        set &= set.wrapping_sub(1);
-        (lane < RAYS).then_some(lane)
-    })
 }

@@ -22,8 +22,8 @@ mod stack;
 mod stats;
 mod validate;
 
-use super::simd::{SimdLevel, UnsupportedLevel, simd_level};
 use super::{Aabb, TriangleMesh};
+use crate::math::simd::{SimdLevel, UnsupportedLevel, simd_level};
 use node::{Block, ChildRef, Node};
 
 pub use single::{AcceptAll, HitFilter};
@@ -83,6 +83,12 @@ impl Bvh {
         }
         self.level = level;
         Ok(self)
+    }
+
+    /// The instructions that bundles are traced with.
+    #[must_use]
+    pub const fn level(&self) -> SimdLevel {
+        self.level
     }
 
     /// Box around all triangles; empty for an empty mesh.

@@ -5,9 +5,9 @@ use super::single::{Any, Closest};
 use super::stack::Stack;
 use super::{Bvh, HitFilter};
 use crate::geometry::bundle::{Floats, LaneHits, Lanes, RAYS, RaySet, lanes_of};
-use crate::geometry::simd::{Select, Simd, SimdBase, SimdMask};
 use crate::geometry::triangle::Watertight;
-use crate::geometry::{Hit, Ray};
+use crate::geometry::{Hit, HitLanes, Ray};
+use crate::math::simd::{Select, Simd, SimdBase, SimdMask};
 
 /// The limit of a lane without a ray, and of a ray that is done.
 const DONE: f32 = -1.0;
@@ -38,6 +38,18 @@ impl<'a, F: HitFilter> AnyLanes<'a, F> {
             limits: Lanes::splat(DONE),
             filter,
         }
+    }
+
+    /// The rays that are done: those that hit something, and places without a ray.
+    #[inline(always)]
+    pub(super) fn done<S: Simd>(&self, simd: S) -> RaySet {
+        let zero = S::f32s::splat(simd, 0.0);
+        let mut done = 0;
+        for group in 0..RAYS / S::f32s::LEN {
+            let below = self.limits.load(simd, group).simd_lt(zero);
+            done |= below.to_bitmask() << (group * S::f32s::LEN);
+        }
+        done
     }
 }
 
@@ -103,6 +115,28 @@ impl<'a, F: HitFilter> ClosestLanes<'a, F> {
             prims: Lanes::splat(0),
             found: 0,
             filter,
+        }
+    }
+
+    /// Writes what those rays in `set` hit that hit something, places counted from `first`.
+    #[inline(always)]
+    pub(super) fn write_hits<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        set: RaySet,
+        hits: &mut HitLanes<N>,
+        first: usize,
+    ) {
+        let width = S::f32s::LEN;
+        for group in 0..RAYS / width {
+            let found = lanes_of(simd, set & self.found, group);
+            let place = first / width + group;
+            let u = found.select(self.u.load(simd, group), hits.u.load(simd, place));
+            hits.u.store::<S>(place, u);
+            let v = found.select(self.v.load(simd, group), hits.v.load(simd, place));
+            hits.v.store::<S>(place, v);
+            let prims = found.select(self.prims.get(simd, group).0, hits.prim.get(simd, place).0);
+            prims.store_slice(hits.prim.group_mut(place, width));
         }
     }
 }

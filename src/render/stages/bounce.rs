@@ -1,9 +1,13 @@
-//! Reflected light → the samples, and mirror rays → the next bounce's queue.
+//! Reflected light → the samples, and mirror rays → the next bounce.
 
 use super::super::Frame;
-use super::{Mirrors, RayQueue, SurfaceBatch};
-use crate::geometry::{Hit, OriginRule, Ray, offset_origin};
-use crate::math::LinearRgb;
+use super::{
+    Column, Column3, Mirrors, Places, Rays, Surfaces, get_rgb, get3, groups, set, set_rgb, set3,
+};
+use crate::geometry::offset_by_bound;
+use crate::math::Real as _;
+use crate::math::simd::{Kernel, Simd};
+use crate::math::wide::Wide;
 use crate::shading::mirror_direction;
 
 /// A mirror ray with a smaller share of its pixel than this is not followed: half a step of 8 bits.
@@ -13,45 +17,111 @@ const MIN_WEIGHT: f32 = 1.0 / 512.0;
 pub fn gather(
     frame: &Frame<'_>,
     mirrors: Mirrors,
-    (queue, hits): (&RayQueue, &[Option<Hit>]),
-    batch: &SurfaceBatch,
-    radiance: &mut [LinearRgb],
+    rays: &Rays,
+    surfaces: &Surfaces,
+    radiance: &mut Column3,
 ) {
-    for (i, _) in hits.iter().enumerate().filter(|(_, hit)| hit.is_none()) {
-        radiance[queue.slots[i] as usize] += frame.background(queue.rays[i].dir) * queue.weights[i];
-    }
-    for (material, run) in &batch.runs {
-        let local = mirrors.local_share(frame.materials[*material].reflectivity);
-        for i in run.clone() {
-            let ray = batch.ray[i] as usize;
-            radiance[queue.slots[ray] as usize] +=
-                batch.reflected[i] * (queue.weights[ray] * local);
+    frame.level.run_or_plain(Gather {
+        frame,
+        mirrors,
+        rays,
+        surfaces,
+        radiance,
+    });
+}
+
+struct Gather<'a> {
+    frame: &'a Frame<'a>,
+    mirrors: Mirrors,
+    rays: &'a Rays,
+    surfaces: &'a Surfaces,
+    radiance: &'a mut Column3,
+}
+
+impl Kernel for Gather<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let mut missed = self.rays.active;
+        for run in &self.surfaces.runs {
+            missed = missed & !run.places;
+            let material = &self.frame.materials[run.material];
+            let local = self.mirrors.local_share(material.reflectivity);
+            for group in 0..groups::<S>(self.rays.count) {
+                if run.places.bits::<S>(group) == 0 {
+                    continue;
+                }
+                let weight = self.rays.weight.get(simd, group) * local;
+                let sum = get_rgb(simd, self.radiance, group)
+                    + get_rgb(simd, &self.surfaces.reflected, group) * weight;
+                set_rgb(self.radiance, group, run.places.mask(simd, group), sum);
+            }
+        }
+        for group in 0..groups::<S>(self.rays.count) {
+            if missed.bits::<S>(group) == 0 {
+                continue;
+            }
+            let behind = self
+                .frame
+                .background(get3(simd, &self.rays.lanes.dir, group));
+            let weight = self.rays.weight.get(simd, group);
+            let sum = get_rgb(simd, self.radiance, group) + behind * weight;
+            set_rgb(self.radiance, group, missed.mask(simd, group), sum);
         }
     }
 }
 
-/// Queues the mirror rays of all points whose material reflects. `next` was empty.
-pub fn queue_mirrors(
-    frame: &Frame<'_>,
-    queue: &RayQueue,
-    batch: &SurfaceBatch,
-    next: &mut RayQueue,
-) {
-    for (material, run) in &batch.runs {
-        let reflectivity = frame.materials[*material].reflectivity;
-        if reflectivity <= 0.0 {
-            continue;
-        }
-        for i in run.clone() {
-            let ray = batch.ray[i] as usize;
-            let weight = queue.weights[ray] * reflectivity;
-            if weight < MIN_WEIGHT {
+/// Replaces the rays by the mirror rays of all points whose material reflects; returns their places.
+pub fn turn_to_mirror_rays(frame: &Frame<'_>, rays: &mut Rays, surfaces: &Surfaces) -> Places {
+    let reflects = |material: usize| frame.materials[material].reflectivity > 0.0;
+    let mut mirrored = Places::EMPTY;
+    if surfaces.runs.iter().any(|run| reflects(run.material)) {
+        frame.level.run_or_plain(MirrorRays {
+            frame,
+            rays,
+            surfaces,
+            mirrored: &mut mirrored,
+        });
+    }
+    mirrored
+}
+
+struct MirrorRays<'a> {
+    frame: &'a Frame<'a>,
+    rays: &'a mut Rays,
+    surfaces: &'a Surfaces,
+    mirrored: &'a mut Places,
+}
+
+impl Kernel for MirrorRays<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let (from, to) = (self.surfaces, self.rays);
+        to.lanes.t_max = Column::splat(-1.0);
+        for run in &from.runs {
+            let reflectivity = self.frame.materials[run.material].reflectivity;
+            if reflectivity <= 0.0 {
                 continue;
             }
-            let s = &batch.points[i];
-            let dir = mirror_direction(s.n_shade, s.n_geo, s.wo);
-            let origin = offset_origin(s.p, s.p_error, s.n_geo, dir, OriginRule::Bound);
-            next.push(Ray { origin, dir }, queue.slots[ray], weight);
+            for group in 0..groups::<S>(to.count) {
+                if run.places.bits::<S>(group) == 0 {
+                    continue;
+                }
+                let weight = to.weight.get(simd, group) * reflectivity;
+                let shows = weight.ge(Wide::new(simd, MIN_WEIGHT));
+                let mask = run.places.mask(simd, group) & shows;
+                let n_geo = get3(simd, &from.n_geo, group);
+                let n_shade = get3(simd, &from.n_shade, group);
+                let wo = -get3(simd, &to.lanes.dir, group);
+                let dir = mirror_direction(n_shade, n_geo, wo);
+                let (p, bound) = (get3(simd, &from.p, group), from.bound.get(simd, group));
+                let origin = offset_by_bound(p, bound, n_geo, dir);
+                set3(&mut to.lanes.origin, group, mask, origin);
+                set3(&mut to.lanes.dir, group, mask, dir);
+                let far = Wide::new(simd, f32::INFINITY);
+                set(&mut to.lanes.t_max, group, mask, far);
+                set(&mut to.weight, group, mask, weight);
+                self.mirrored.add(group, mask);
+            }
         }
     }
 }

@@ -2,18 +2,19 @@
 
 use std::f32::consts::{FRAC_1_PI, TAU};
 
-use glam::Vec3;
-
 use super::super::frame::{FrameLight, FrameLightKind};
 use super::super::material::FrameMaterial;
 use super::super::{Counters, Frame};
 use super::trace::any_hits;
-use super::{Mirrors, ShadowBatch, SurfaceBatch};
-use crate::geometry::{OriginRule, Ray, offset_origin};
-use crate::math::LinearRgb;
+use super::{
+    Column, Mirrors, Places, Rays, Shadows, Surfaces, get_rgb, get3, groups, set, set_rgb, set3,
+};
+use crate::geometry::offset_by_bound;
+use crate::math::simd::{Kernel, Simd};
+use crate::math::wide::Wide;
+use crate::math::{LinearRgb, Real, V3};
 use crate::scene::ShadingModel;
 use crate::shading::{Falloff, phong_lobe, reflect};
-use crate::surface::SurfaceInteraction;
 
 /// Shadow rays end this share short of the light, so that a mesh around the lamp does not shadow it by
 /// rounding.
@@ -22,174 +23,250 @@ pub const LIGHT_END: f32 = 1.0 - 1.0 / 1_048_576.0;
 /// A lamp nearer than this (internal units) lies in the surface: there is no direction to it.
 const MIN_LIGHT_DISTANCE: f32 = 1e-18;
 
-/// Fills `batch.reflected` with the light that every point sends to the eye, mirrors left out (2.14
-/// corrected).
+/// Works out the light that every point sends to the eye, mirrors left out (2.14 corrected).
 pub fn reflected_light(
     frame: &Frame<'_>,
     mirrors: Mirrors,
-    batch: &mut SurfaceBatch,
-    shadows: &mut ShadowBatch,
+    rays: &Rays,
+    surfaces: &mut Surfaces,
+    shadows: &mut Shadows,
     counters: &mut Counters,
 ) {
-    let ambient = frame.ambient;
-    batch.reflected.clear();
-    batch
-        .reflected
-        .extend(batch.diffuse.iter().map(|&kd| kd * ambient));
+    frame.level.run_or_plain(Ambient {
+        frame,
+        count: rays.count,
+        surfaces,
+    });
     for light in &frame.lights {
-        collect_lit(frame, light, mirrors, batch, shadows);
-        if frame.shadows {
-            any_hits(
-                frame,
-                &shadows.rays,
-                &shadows.t_max,
-                &mut shadows.occluded,
-                counters,
-            );
-        } else {
-            shadows.occluded.clear();
-            shadows.occluded.resize(shadows.rays.len(), false);
+        frame.level.run_or_plain(AimAtLight {
+            frame,
+            light,
+            mirrors,
+            count: rays.count,
+            surfaces,
+            shadows,
+        });
+        shadows.occluded = Places::EMPTY;
+        if frame.shadows && !shadows.lit.is_empty() {
+            any_hits(frame, rays.count, shadows, counters);
         }
-        add_light(frame, batch, shadows, counters);
+        frame.level.run_or_plain(AddLight {
+            frame,
+            light,
+            rays,
+            surfaces,
+            shadows,
+            counters,
+        });
     }
 }
 
-/// Lists the points that can see the light if nothing is between: it must be outside for the geometric
-/// and for the shading normal, or reliefs leak light. The others cost no shadow ray.
-fn collect_lit(
-    frame: &Frame<'_>,
-    light: &FrameLight,
+/// Starts with the light from everywhere.
+struct Ambient<'a> {
+    frame: &'a Frame<'a>,
+    count: usize,
+    surfaces: &'a mut Surfaces,
+}
+
+impl Kernel for Ambient<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let ambient = LinearRgb::splat(Wide::new(simd, 0.0), self.frame.ambient);
+        for group in 0..groups::<S>(self.count) {
+            let light = get_rgb(simd, &self.surfaces.diffuse, group) * ambient;
+            let [r, g, b] = &mut self.surfaces.reflected;
+            r.set(group, light.r);
+            g.set(group, light.g);
+            b.set(group, light.b);
+        }
+    }
+}
+
+/// Sets shadow rays from the points that can see the light if nothing is between: it must be outside for the
+/// geometric and for the shading normal, or reliefs leak light. The others cost no shadow ray.
+struct AimAtLight<'a> {
+    frame: &'a Frame<'a>,
+    light: &'a FrameLight,
     mirrors: Mirrors,
-    batch: &SurfaceBatch,
-    shadows: &mut ShadowBatch,
-) {
-    shadows.point.clear();
-    shadows.arriving.clear();
-    shadows.rays.clear();
-    shadows.t_max.clear();
-    for (material, run) in &batch.runs {
-        let material = &frame.materials[*material];
-        if mirrors.local_share(material.reflectivity) <= 0.0 {
-            continue;
-        }
-        for i in run.clone() {
-            let s = &batch.points[i];
-            if batch.diffuse[i].max_channel() <= 0.0 && !material.is_glossy {
+    count: usize,
+    surfaces: &'a Surfaces,
+    shadows: &'a mut Shadows,
+}
+
+impl Kernel for AimAtLight<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let zero = Wide::new(simd, 0.0);
+        let (from, to) = (self.surfaces, self.shadows);
+        to.lit = Places::EMPTY;
+        to.rays.t_max = Column::splat(-1.0);
+        for run in &from.runs {
+            let material = &self.frame.materials[run.material];
+            if self.mirrors.local_share(material.reflectivity) <= 0.0 {
                 continue;
             }
-            let Some((wi, distance, irradiance)) = arriving(light, s) else {
-                continue;
-            };
-            if !(s.n_geo.dot(wi) > 0.0 && s.n_shade.dot(wi) > 0.0) {
-                continue;
+            for group in 0..groups::<S>(self.count) {
+                if run.places.bits::<S>(group) == 0 {
+                    continue;
+                }
+                let mut lit = run.places.mask(simd, group);
+                if !material.is_glossy {
+                    let LinearRgb { r, g, b } = get_rgb(simd, &from.diffuse, group);
+                    lit = lit & r.larger(g).larger(b).gt(zero);
+                }
+                let p = get3(simd, &from.p, group);
+                let n_geo = get3(simd, &from.n_geo, group);
+                let n_shade = get3(simd, &from.n_shade, group);
+                let light = arriving(self.light, p);
+                lit = lit & light.arrives;
+                lit = lit & n_geo.dot(light.wi).gt(zero) & n_shade.dot(light.wi).gt(zero);
+                let bound = from.bound.get(simd, group);
+                let origin = offset_by_bound(p, bound, n_geo, light.wi);
+                set3(&mut to.rays.origin, group, lit, origin);
+                set3(&mut to.rays.dir, group, lit, light.wi);
+                set(&mut to.rays.t_max, group, lit, light.distance * LIGHT_END);
+                set(&mut to.falloff, group, lit, light.falloff);
+                to.lit.add(group, lit);
             }
-            shadows.point.push(i as u32);
-            shadows.arriving.push((wi, irradiance));
-            let origin = offset_origin(s.p, s.p_error, s.n_geo, wi, OriginRule::Bound);
-            shadows.rays.push(Ray { origin, dir: wi });
-            shadows.t_max.push(distance * LIGHT_END);
         }
     }
 }
 
-/// Unit direction to the light, distance to it and irradiance on a surface that faces it.
-pub fn arriving(light: &FrameLight, s: &SurfaceInteraction) -> Option<(Vec3, f32, LinearRgb)> {
-    match light.kind {
-        FrameLightKind::Directional(wi) => Some((wi, f32::INFINITY, light.irradiance)),
-        FrameLightKind::Point(place, falloff) => {
-            let to_light = place - s.p;
-            let distance = to_light.length();
-            if !(distance > MIN_LIGHT_DISTANCE && distance.is_finite()) {
-                return None;
-            }
-            let irradiance = match falloff {
-                Falloff::None => light.irradiance,
-                Falloff::InverseSquare => light.irradiance * (1.0 / (distance * distance)),
-            };
-            Some((to_light / distance, distance, irradiance))
-        }
-    }
-}
-
-fn add_light(
-    frame: &Frame<'_>,
-    batch: &mut SurfaceBatch,
-    shadows: &ShadowBatch,
-    counters: &mut Counters,
-) {
-    // Points of the list are in run order, so each run is one stretch of it.
-    let mut next = 0;
-    for (material, run) in &batch.runs {
-        let material = &frame.materials[*material];
-        while next < shadows.point.len() && run.contains(&(shadows.point[next] as usize)) {
-            let i = shadows.point[next] as usize;
-            let (wi, irradiance) = shadows.arriving[next];
-            let visible = !shadows.occluded[next];
-            next += 1;
-            if !visible {
-                continue;
-            }
-            let response = response(
-                frame.model,
-                material,
-                &batch.points[i],
-                batch.diffuse[i],
-                wi,
-            );
-            counters.power_calls += u64::from(response.took_power);
-            batch.reflected[i] += irradiance * response.sum();
-        }
-    }
-}
-
-/// What a point makes of one unit of irradiance (on a facing surface) that arrives from `wi`.
+/// What reaches a point if nothing is between; with vector lanes, for each.
 #[derive(Debug, Clone, Copy)]
-pub struct Response {
-    /// Diffuse part.
-    pub diffuse: LinearRgb,
-    /// Specular part; black for matte materials and highlights that point away.
-    pub specular: LinearRgb,
-    /// Whether a power was taken for it.
-    pub took_power: bool,
+pub struct Arriving<F: Real> {
+    /// Unit direction to the light.
+    pub wi: V3<F>,
+    /// Distance to it; infinite for directional lights.
+    pub distance: F,
+    /// Irradiance on a surface that faces it, as a share of the light's.
+    pub falloff: F,
+    /// Whether there is a direction at all.
+    pub arrives: F::Mask,
 }
 
-impl Response {
+/// What reaches the point `p`.
+#[inline(always)]
+pub fn arriving<F: Real>(light: &FrameLight, p: V3<F>) -> Arriving<F> {
+    let one = p.x.splat(1.0);
+    match light.kind {
+        FrameLightKind::Directional(wi) => Arriving {
+            wi: V3::splat(one, wi),
+            distance: one.splat(f32::INFINITY),
+            falloff: one,
+            arrives: one.eq(one),
+        },
+        FrameLightKind::Point(place, falloff) => {
+            let to_light = V3::splat(one, place) - p;
+            let distance = to_light.length();
+            let per_distance = one / distance;
+            Arriving {
+                wi: to_light * per_distance,
+                distance,
+                falloff: match falloff {
+                    Falloff::None => one,
+                    Falloff::InverseSquare => per_distance * per_distance,
+                },
+                arrives: distance.gt(one.splat(MIN_LIGHT_DISTANCE)) & distance.is_finite(),
+            }
+        }
+    }
+}
+
+/// Adds what the points that see the light make of it.
+struct AddLight<'a> {
+    frame: &'a Frame<'a>,
+    light: &'a FrameLight,
+    rays: &'a Rays,
+    surfaces: &'a mut Surfaces,
+    shadows: &'a Shadows,
+    counters: &'a mut Counters,
+}
+
+impl Kernel for AddLight<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let irradiance = LinearRgb::splat(Wide::new(simd, 0.0), self.light.irradiance);
+        let seen = self.shadows.lit & !self.shadows.occluded;
+        let surfaces = self.surfaces;
+        let mut powers = Places::EMPTY;
+        for run in &surfaces.runs {
+            let material = &self.frame.materials[run.material];
+            for group in 0..groups::<S>(self.rays.count) {
+                if run.places.bits::<S>(group) & seen.bits::<S>(group) == 0 {
+                    continue;
+                }
+                let mask = run.places.mask(simd, group) & seen.mask(simd, group);
+                let response = response(
+                    self.frame.model,
+                    material,
+                    get3(simd, &surfaces.n_shade, group),
+                    -get3(simd, &self.rays.lanes.dir, group),
+                    get_rgb(simd, &surfaces.diffuse, group),
+                    get3(simd, &self.shadows.rays.dir, group),
+                );
+                powers.add(group, response.took_power & mask);
+                let falloff = self.shadows.falloff.get(simd, group);
+                let sum = get_rgb(simd, &surfaces.reflected, group)
+                    + irradiance * falloff * response.sum();
+                set_rgb(&mut surfaces.reflected, group, mask, sum);
+            }
+        }
+        self.counters.power_calls += powers.count();
+    }
+}
+
+/// What a point makes of one unit of irradiance (on a facing surface); with vector lanes, for each.
+#[derive(Debug, Clone, Copy)]
+pub struct Response<F: Real = f32> {
+    /// Diffuse part.
+    pub diffuse: LinearRgb<F>,
+    /// Specular part; black for matte materials and highlights that point away.
+    pub specular: LinearRgb<F>,
+    /// Whether a power was taken for it.
+    pub took_power: F::Mask,
+}
+
+impl<F: Real> Response<F> {
     /// Both parts.
+    #[inline(always)]
     #[must_use]
-    pub fn sum(&self) -> LinearRgb {
+    pub fn sum(&self) -> LinearRgb<F> {
         self.diffuse + self.specular
     }
 }
 
 /// Lambert and Phong for one light direction on the lit side (2.10, 2.13, 2.14 corrected).
+#[inline(always)]
 #[must_use]
-pub fn response(
+pub fn response<F: Real>(
     model: ShadingModel,
     material: &FrameMaterial<'_>,
-    s: &SurfaceInteraction,
-    diffuse: LinearRgb,
-    wi: Vec3,
-) -> Response {
+    n_shade: V3<F>,
+    wo: V3<F>,
+    diffuse: LinearRgb<F>,
+    wi: V3<F>,
+) -> Response<F> {
     let (diffuse_factor, specular_factor) = factors(model, material);
-    let cos = s.n_shade.dot(wi);
-    let diffuse = diffuse * (diffuse_factor * cos);
-    let lobe = if material.is_glossy {
-        phong_lobe(reflect(s.n_shade, wi), s.wo, material.shininess)
-    } else {
-        None
+    let cos = n_shade.dot(wi);
+    let zero = cos.splat(0.0);
+    let diffuse = diffuse * (cos * diffuse_factor);
+    if !material.is_glossy {
+        return Response {
+            diffuse,
+            specular: LinearRgb::splat(zero, LinearRgb::BLACK),
+            took_power: zero.lt(zero),
+        };
+    }
+    let (lobe, took_power) = phong_lobe(reflect(n_shade, wi), wo, material.shininess);
+    let foreshortened = match model {
+        ShadingModel::Normalized => lobe * cos,
+        ShadingModel::Report => lobe,
     };
-    let foreshortening = if model == ShadingModel::Normalized {
-        cos
-    } else {
-        1.0
-    };
-    let specular = lobe.map_or(LinearRgb::BLACK, |l| {
-        material.ks * (specular_factor * foreshortening * l)
-    });
     Response {
         diffuse,
-        specular,
-        took_power: lobe.is_some(),
+        specular: LinearRgb::splat(zero, material.ks) * (foreshortened * specular_factor),
+        took_power,
     }
 }
 

@@ -1,17 +1,34 @@
-//! The stages that a tile's rays walk through, each over flat arrays: rays → hits → surfaces → mapped
-//! surfaces → light → next bounce. A stage knows only its neighbours' arrays.
+//! The stages that a tile's rays walk through, each over flat arrays: rays → hits → mapped surfaces → light →
+//! next bounce. A stage knows only its neighbours' arrays.
+//!
+//! A sample keeps one *place* in all arrays from the camera to the film. What a stage leaves out (places
+//! that missed, other materials, points that a light cannot reach) it masks, so that nothing is moved.
+//! Stages that compute are [`Kernel`](crate::math::simd::Kernel)s: loops over groups of as many places as
+//! the machine has lanes, one material at a time, calling the same functions that work on one point.
 
 pub mod bounce;
+pub mod camera;
 pub mod light;
 pub mod surface;
 pub mod trace;
 
-use glam::Vec3;
-
 use super::{Counters, Frame};
-use crate::geometry::{Hit, Ray};
-use crate::math::LinearRgb;
-use crate::surface::SurfaceInteraction;
+use crate::geometry::{HitLanes, RayLanes, TriangleAttributes};
+use crate::math::lanes::{Lanes, PlaceSet};
+use crate::math::simd::{Simd, SimdBase as _};
+use crate::math::wide::{Wide, WideMask};
+use crate::math::{LinearRgb, Real as _, V3};
+use crate::surface::FacetKind;
+
+/// Places in a tile's arrays: a pixel each.
+pub const PLACES: usize = 1024;
+
+/// A number for each place.
+pub type Column = Lanes<f32, PLACES>;
+/// Some places.
+pub type Places = PlaceSet<{ PLACES / 64 }>;
+/// Three numbers for each place.
+pub type Column3 = [Column; 3];
 
 /// Whether points of this bounce send mirror rays on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,114 +50,209 @@ impl Mirrors {
     }
 }
 
-/// Rays of one bounce and the pixels they belong to.
-#[derive(Debug, Default)]
-pub struct RayQueue {
+/// Rays of one bounce.
+#[derive(Debug)]
+pub struct Rays {
+    /// Places in use, from the first on.
+    pub count: usize,
+    /// Places with a ray.
+    pub active: Places,
     /// The rays.
-    pub rays: Vec<Ray>,
-    /// Slot of each ray's pixel in the tile's list of samples.
-    pub slots: Vec<u32>,
+    pub lanes: RayLanes<PLACES>,
     /// Share of each ray's colour in its pixel.
-    pub weights: Vec<f32>,
+    pub weight: Column,
 }
 
-impl RayQueue {
-    /// Forgets all rays, keeps the memory.
-    pub fn clear(&mut self) {
-        self.rays.clear();
-        self.slots.clear();
-        self.weights.clear();
-    }
-
-    /// Adds a ray.
-    pub fn push(&mut self, ray: Ray, slot: u32, weight: f32) {
-        self.rays.push(ray);
-        self.slots.push(slot);
-        self.weights.push(weight);
-    }
+/// Places whose surfaces are made alike.
+#[derive(Debug, Clone, Copy)]
+pub struct Run {
+    /// What their triangles have in common.
+    pub attributes: TriangleAttributes,
+    /// Index of the material.
+    pub material: usize,
+    /// What of the triangles is read.
+    pub kind: FacetKind,
+    /// Where they are.
+    pub places: Places,
 }
 
-/// Surface points of one bounce, those of one material next to each other.
-#[derive(Debug, Default)]
-pub struct SurfaceBatch {
-    /// Index into the ray queue, sorted by material.
-    pub ray: Vec<u32>,
+/// Surface points of one bounce.
+#[derive(Debug)]
+pub struct Surfaces {
+    /// All places with a surface, cut up by material.
+    pub runs: Vec<Run>,
     /// The points.
-    pub points: Vec<SurfaceInteraction>,
-    /// Diffuse colour of each: `k_d` times the albedo map.
-    pub diffuse: Vec<LinearRgb>,
-    /// Reflected light of each.
-    pub reflected: Vec<LinearRgb>,
-    /// Material index and range of points of every run.
-    pub runs: Vec<(usize, std::ops::Range<usize>)>,
+    pub p: Column3,
+    /// How far rounding may have taken each off its plane.
+    pub bound: Column,
+    /// Geometric normals towards the eye.
+    pub n_geo: Column3,
+    /// Perturbed normals towards the eye.
+    pub n_shade: Column3,
+    /// Diffuse colours: `k_d` times the albedo map.
+    pub diffuse: Column3,
+    /// Reflected light.
+    pub reflected: Column3,
 }
 
 /// Shadow rays of one light.
-#[derive(Debug, Default)]
-pub struct ShadowBatch {
-    /// Index of the lit point in the surface batch.
-    pub point: Vec<u32>,
-    /// Unit direction to the light and irradiance on a facing surface.
-    pub arriving: Vec<(Vec3, LinearRgb)>,
-    /// From the point to the light.
-    pub rays: Vec<Ray>,
-    /// Distance to the light.
-    pub t_max: Vec<f32>,
-    /// Whether something is between.
-    pub occluded: Vec<bool>,
+#[derive(Debug)]
+pub struct Shadows {
+    /// From each point that can see the light if nothing is between, to it.
+    pub rays: RayLanes<PLACES>,
+    /// Places with a ray.
+    pub lit: Places,
+    /// Irradiance on a facing surface as a share of the light's.
+    pub falloff: Column,
+    /// Places where something is between.
+    pub occluded: Places,
 }
 
 /// Arrays that a worker uses for one tile after another, so that the steady state allocates nothing.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Scratch {
-    /// The tile's pixels in this pass.
-    pub pixels: Vec<super::tile::TilePixel>,
-    /// Rays of this bounce.
-    pub queue: RayQueue,
-    /// Rays of the next.
-    pub next: RayQueue,
-    /// How far each ray may go.
-    pub t_max: Vec<f32>,
-    /// Closest hits of `queue`.
-    pub hits: Vec<Option<Hit>>,
-    /// What they hit.
-    pub surfaces: SurfaceBatch,
-    /// One light at a time.
-    pub shadows: ShadowBatch,
-    /// Sum of each sample in the tile's list.
-    pub radiance: Vec<LinearRgb>,
+    /// What the rays of this bounce hit.
+    pub hits: Box<HitLanes<PLACES>>,
+    /// Everything else.
+    pub work: Box<Work>,
 }
 
-/// Everything that follows once the hits of the queue's rays are known: the samples get what these rays saw,
-/// and `next` holds the mirror rays of the bounce after.
-pub fn shade_hits(
-    frame: &Frame<'_>,
-    mirrors: Mirrors,
-    scratch: &mut Scratch,
-    counters: &mut Counters,
-) {
-    let Scratch {
-        queue,
-        next,
-        hits,
-        surfaces,
-        shadows,
-        radiance,
-        ..
-    } = scratch;
-    surface::mapped_surfaces(frame, queue, hits, surfaces, counters);
-    light::reflected_light(frame, mirrors, surfaces, shadows, counters);
-    bounce::gather(frame, mirrors, (queue, hits), surfaces, radiance);
-    next.clear();
-    if mirrors == Mirrors::Follow {
-        bounce::queue_mirrors(frame, queue, surfaces, next);
+/// What the stages read and write.
+#[derive(Debug)]
+pub struct Work {
+    /// Rays of this bounce.
+    pub rays: Rays,
+    /// The surfaces that they hit.
+    pub surfaces: Surfaces,
+    /// One light at a time.
+    pub shadows: Shadows,
+    /// Sum of each sample.
+    pub radiance: Column3,
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        const ZEROS: Column3 = [Column::splat(0.0); 3];
+        Self {
+            hits: Box::new(HitLanes::none()),
+            work: Box::new(Work {
+                rays: Rays {
+                    count: 0,
+                    active: Places::EMPTY,
+                    lanes: RayLanes::none(),
+                    weight: Column::splat(0.0),
+                },
+                surfaces: Surfaces {
+                    runs: Vec::new(),
+                    p: ZEROS,
+                    bound: Column::splat(0.0),
+                    n_geo: ZEROS,
+                    n_shade: ZEROS,
+                    diffuse: ZEROS,
+                    reflected: ZEROS,
+                },
+                shadows: Shadows {
+                    rays: RayLanes::none(),
+                    lit: Places::EMPTY,
+                    falloff: Column::splat(0.0),
+                    occluded: Places::EMPTY,
+                },
+                radiance: ZEROS,
+            }),
+        }
     }
 }
 
-/// Traces the queue's rays.
-pub fn trace_queue(frame: &Frame<'_>, scratch: &mut Scratch, counters: &mut Counters) {
-    let Scratch {
-        queue, t_max, hits, ..
-    } = scratch;
-    trace::closest_hits(frame, &queue.rays, t_max, hits, counters);
+impl Work {
+    /// Everything that follows once the hits of the rays are known: their samples get what they saw, and
+    /// the rays become the mirror rays of the bounce after.
+    pub fn shade_hits(
+        &mut self,
+        frame: &Frame<'_>,
+        hits: &HitLanes<PLACES>,
+        mirrors: Mirrors,
+        counters: &mut Counters,
+    ) {
+        let (rays, surfaces) = (&mut self.rays, &mut self.surfaces);
+        surface::mapped_surfaces(frame, rays, hits, surfaces, counters);
+        light::reflected_light(frame, mirrors, rays, surfaces, &mut self.shadows, counters);
+        bounce::gather(frame, mirrors, rays, surfaces, &mut self.radiance);
+        rays.active = match mirrors {
+            Mirrors::Follow => bounce::turn_to_mirror_rays(frame, rays, surfaces),
+            Mirrors::End => Places::EMPTY,
+        };
+    }
+}
+
+impl Scratch {
+    /// Follows the mirror rays through all bounces after the first: no recursion.
+    pub fn follow_mirrors(&mut self, frame: &Frame<'_>, counters: &mut Counters) {
+        let Self { hits, work } = self;
+        for bounce in 1..=frame.max_bounces {
+            if work.rays.active.is_empty() {
+                break;
+            }
+            counters.mirror_rays += work.rays.active.count();
+            trace::closest_hits(frame, &work.rays, hits, counters);
+            work.shade_hits(frame, hits, mirrors_at(frame, bounce), counters);
+        }
+    }
+}
+
+/// What mirrors do at a bounce.
+#[must_use]
+pub fn mirrors_at(frame: &Frame<'_>, bounce: u32) -> Mirrors {
+    if bounce == frame.max_bounces {
+        Mirrors::End
+    } else {
+        Mirrors::Follow
+    }
+}
+
+/// How many groups hold the first `count` places.
+#[inline(always)]
+const fn groups<S: Simd>(count: usize) -> usize {
+    count.div_ceil(S::f32s::LEN)
+}
+
+/// One vector per lane of a group.
+#[inline(always)]
+fn get3<S: Simd>(simd: S, columns: &Column3, group: usize) -> V3<Wide<S>> {
+    let [x, y, z] = columns;
+    V3::new(x.get(simd, group), y.get(simd, group), z.get(simd, group))
+}
+
+/// Writes the lanes of a group that are in the mask; the others keep what they held.
+#[inline(always)]
+fn set3<S: Simd>(columns: &mut Column3, group: usize, mask: WideMask<S>, v: V3<Wide<S>>) {
+    let [x, y, z] = columns;
+    set(x, group, mask, v.x);
+    set(y, group, mask, v.y);
+    set(z, group, mask, v.z);
+}
+
+/// [`set3`] for one number.
+#[inline(always)]
+fn set<S: Simd>(column: &mut Column, group: usize, mask: WideMask<S>, x: Wide<S>) {
+    use crate::math::simd::ExtractToken as _;
+    let old = column.get(x.0.token(), group);
+    column.set(group, Wide::select(mask, x, old));
+}
+
+/// One colour per lane of a group.
+#[inline(always)]
+fn get_rgb<S: Simd>(simd: S, columns: &Column3, group: usize) -> LinearRgb<Wide<S>> {
+    let V3 { x, y, z } = get3(simd, columns, group);
+    LinearRgb { r: x, g: y, b: z }
+}
+
+/// [`set3`] for colours.
+#[inline(always)]
+fn set_rgb<S: Simd>(
+    columns: &mut Column3,
+    group: usize,
+    mask: WideMask<S>,
+    LinearRgb { r, g, b }: LinearRgb<Wide<S>>,
+) {
+    set3(columns, group, mask, V3::new(r, g, b));
 }

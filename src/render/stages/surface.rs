@@ -1,103 +1,160 @@
-//! Hits → surfaces → mapped surfaces: one material and one method at a time.
+//! Hits → mapped surfaces: one material and one kind of triangle at a time.
 
+use super::super::material::FrameMaterial;
 use super::super::{Counters, Frame};
-use super::{RayQueue, SurfaceBatch};
-use crate::geometry::Hit;
-use crate::surface::{SurfaceParts, surface_at};
+use super::{PLACES, Places, Rays, Run, Surfaces, get3, groups, set, set_rgb, set3};
+use crate::geometry::{HitLanes, NO_HIT};
+use crate::math::simd::{Kernel, Simd};
+use crate::math::wide::{Wide, WideBits, WideMask};
+use crate::math::{Bits as _, LinearRgb, Mask as _, Real as _, V3};
+use crate::surface::{Facet, FacetKind, SurfaceInteraction, SurfaceParts, surface_on};
 
-/// Fills the batch with the surfaces that the rays hit, perturbed by their materials' maps and turned
-/// towards the eye.
+/// Makes the surfaces that the rays hit, perturbed by their materials' maps and turned towards the eye.
 pub fn mapped_surfaces(
     frame: &Frame<'_>,
-    queue: &RayQueue,
-    hits: &[Option<Hit>],
-    batch: &mut SurfaceBatch,
+    rays: &Rays,
+    hits: &HitLanes<PLACES>,
+    surfaces: &mut Surfaces,
     counters: &mut Counters,
 ) {
-    sort_by_material(frame, hits, batch);
-    batch.points.clear();
-    batch.diffuse.clear();
-    batch.runs.clear();
-    let mut start = 0;
-    while start < batch.ray.len() {
-        let key = run_key(frame, hits, batch.ray[start]);
-        let len = batch.ray[start..]
-            .iter()
-            .take_while(|&&r| run_key(frame, hits, r) == key)
-            .count();
-        let (material, has_uv) = (usize::from(key.0), key.1);
-        let parts = frame.materials[material].parts(has_uv);
-        for &r in &batch.ray[start..start + len] {
-            if let Some(hit) = &hits[r as usize] {
-                batch
-                    .points
-                    .push(surface_at(frame.mesh, hit, &queue.rays[r as usize], parts));
+    find_runs(frame, rays, hits, &mut surfaces.runs);
+    for run in 0..surfaces.runs.len() {
+        let run = surfaces.runs[run];
+        count(&frame.materials[run.material], &run, counters);
+        frame.level.run_or_plain(MapRun {
+            frame,
+            rays,
+            hits,
+            run,
+            surfaces,
+        });
+    }
+}
+
+/// Cuts the places that hit something up by material and kind of triangle.
+fn find_runs(frame: &Frame<'_>, rays: &Rays, hits: &HitLanes<PLACES>, runs: &mut Vec<Run>) {
+    runs.clear();
+    let mut last = 0;
+    for place in rays.active.iter() {
+        let prim = hits.prim.0[place];
+        if prim == NO_HIT {
+            continue;
+        }
+        let attributes = frame.mesh.attributes[prim as usize];
+        if runs
+            .get(last)
+            .is_none_or(|run| run.attributes != attributes)
+        {
+            let known = runs.iter().position(|run| run.attributes == attributes);
+            last = known.unwrap_or(runs.len());
+            if last == runs.len() {
+                let material = usize::from(attributes.material);
+                runs.push(Run {
+                    attributes,
+                    material,
+                    kind: FacetKind {
+                        smooth: attributes.smooth,
+                        parts: frame.materials[material].parts(attributes.has_uv),
+                    },
+                    places: Places::EMPTY,
+                });
             }
         }
-        let run = start..start + len;
-        map_run(frame, material, parts, run.clone(), batch, counters);
-        batch.runs.push((material, run));
-        start += len;
+        runs[last].places.insert(place);
     }
 }
 
-/// Material, and whether its texture coordinates can be used: what is the same for a whole run.
-fn run_key(frame: &Frame<'_>, hits: &[Option<Hit>], ray: u32) -> (u16, bool) {
-    hits[ray as usize].map_or((0, false), |hit| {
-        let a = frame.mesh.attributes[hit.prim as usize];
-        (a.material, a.has_uv)
-    })
-}
-
-fn sort_by_material(frame: &Frame<'_>, hits: &[Option<Hit>], batch: &mut SurfaceBatch) {
-    batch.ray.clear();
-    batch
-        .ray
-        .extend((0..hits.len() as u32).filter(|&r| hits[r as usize].is_some()));
-    let key = |&r: &u32| run_key(frame, hits, r);
-    if !batch.ray.is_sorted_by_key(key) {
-        // Stable, so that points of one material stay in the order of their pixels.
-        batch.ray.sort_by_key(key);
+/// Counts the look-ups that a run costs.
+fn count(material: &FrameMaterial<'_>, run: &Run, counters: &mut Counters) {
+    let points = run.places.count();
+    if run.kind.parts == SurfaceParts::Gradients {
+        counters.perturbations += points;
+        counters.texture_fetches += points * material.mapping.fetches_per_point();
+    }
+    if material.albedo.is_some() && run.kind.parts >= SurfaceParts::Uv {
+        counters.texture_fetches += points;
     }
 }
 
-fn map_run(
-    frame: &Frame<'_>,
-    material: usize,
+struct MapRun<'a> {
+    frame: &'a Frame<'a>,
+    rays: &'a Rays,
+    hits: &'a HitLanes<PLACES>,
+    run: Run,
+    surfaces: &'a mut Surfaces,
+}
+
+impl Kernel for MapRun<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let material = &self.frame.materials[self.run.material];
+        let mut last = None;
+        for group in 0..groups::<S>(self.rays.count) {
+            let places = self.run.places.bits::<S>(group);
+            if places == 0 {
+                continue;
+            }
+            let lane = places.trailing_zeros() as usize;
+            let mask = self.run.places.mask(simd, group);
+            let facet = self.facet(self.hits.prim.get(simd, group), (mask, lane), &mut last);
+            let barycentrics = (self.hits.u.get(simd, group), self.hits.v.get(simd, group));
+            let wo = -get3(simd, &self.rays.lanes.dir, group);
+            let mut s = surface_on(&facet, barycentrics, wo, self.run.kind);
+            let diffuse = perturb(material, self.run.kind.parts, &mut s);
+            // Perturbed on the front side; an eye behind it sees the other side of the same relief.
+            let from_behind = s.wo.dot(s.n_geo).lt(Wide::new(simd, 0.0));
+            let n_geo = V3::select(from_behind, -s.n_geo, s.n_geo);
+            let n_shade = V3::select(from_behind, -s.n_shade, s.n_shade);
+            let to = &mut *self.surfaces;
+            set3(&mut to.p, group, mask, s.p);
+            set(&mut to.bound, group, mask, s.n_geo.abs().dot(s.p_error));
+            set3(&mut to.n_geo, group, mask, n_geo);
+            set3(&mut to.n_shade, group, mask, n_shade);
+            set_rgb(&mut to.diffuse, group, mask, diffuse);
+        }
+    }
+}
+
+impl MapRun<'_> {
+    /// The triangle of each lane. On large triangles all lanes share one; it is prepared once, and kept in
+    /// `last` for the groups that follow. `lane` is one in the mask.
+    #[inline(always)]
+    fn facet<S: Simd>(
+        &self,
+        prims: WideBits<S>,
+        (mask, lane): (WideMask<S>, usize),
+        last: &mut Option<(u32, Facet)>,
+    ) -> Facet<Wide<S>> {
+        use crate::math::simd::SimdBase as _;
+        let (mesh, kind) = (self.frame.mesh, self.run.kind);
+        let prim = prims.0.as_slice()[lane];
+        if !(prims.equals(prim) | !mask).all() {
+            // Lanes outside the mask hold no triangle: they take part with any.
+            let prims = WideBits::select(mask, prims, prims.splat(prim));
+            return Facet::fetch(mesh, prims, kind);
+        }
+        let facet = match last {
+            Some((cached, facet)) if *cached == prim => *facet,
+            _ => Facet::fetch(mesh, prim, kind),
+        };
+        *last = Some((prim, facet));
+        Facet::splat(prims.to_real(), &facet)
+    }
+}
+
+/// Applies the material's maps; returns the diffuse colour.
+#[inline(always)]
+pub fn perturb<F: crate::math::Real>(
+    material: &FrameMaterial<'_>,
     parts: SurfaceParts,
-    run: std::ops::Range<usize>,
-    batch: &mut SurfaceBatch,
-    counters: &mut Counters,
-) {
-    let material = &frame.materials[material];
-    let points = &mut batch.points[run];
-    let count = points.len() as u64;
+    s: &mut SurfaceInteraction<F>,
+) -> LinearRgb<F> {
     if parts == SurfaceParts::Gradients {
-        material.mapping.apply(points);
-        counters.perturbations += count;
-        counters.texture_fetches += count * material.mapping.fetches_per_point();
+        material.mapping.apply(s);
     }
+    let kd = LinearRgb::splat(s.uv.x, material.kd);
     match &material.albedo {
-        Some(albedo) if parts >= SurfaceParts::Uv => {
-            counters.texture_fetches += count;
-            batch
-                .diffuse
-                .extend(points.iter().map(|s| material.kd * albedo.color(s.uv)));
-        }
-        _ => batch
-            .diffuse
-            .extend(std::iter::repeat_n(material.kd, points.len())),
+        Some(albedo) if parts >= SurfaceParts::Uv => kd * albedo.color(s.uv),
+        _ => kd,
     }
-    for s in points {
-        // Perturbed on the front side; an eye behind it sees the other side of the same relief.
-        if s.wo.dot(s.n_geo) < 0.0 {
-            s.n_geo = -s.n_geo;
-            s.n_shade = -s.n_shade;
-        }
-    }
-    debug_assert_eq!(
-        batch.diffuse.len(),
-        batch.points.len(),
-        "one colour per point"
-    );
 }

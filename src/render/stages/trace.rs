@@ -3,59 +3,41 @@
 use std::cell::Cell;
 
 use super::super::{Counters, Frame};
+use super::{PLACES, Rays, Shadows};
+use crate::geometry::HitLanes;
 use crate::geometry::bvh::AcceptAll;
-use crate::geometry::triangle::Watertight;
-use crate::geometry::{Hit, Ray};
+use crate::math::V2;
 use crate::surface::uv_at;
 
-/// Closest hits of all rays. `hits` is resized to fit.
+/// Closest hits of all rays.
 pub fn closest_hits(
     frame: &Frame<'_>,
-    rays: &[Ray],
-    t_max: &mut Vec<f32>,
-    hits: &mut Vec<Option<Hit>>,
+    rays: &Rays,
+    hits: &mut HitLanes<PLACES>,
     counters: &mut Counters,
 ) {
-    t_max.clear();
-    t_max.resize(rays.len(), f32::INFINITY);
-    hits.clear();
-    hits.resize(rays.len(), None);
+    let (bvh, rays, count) = (frame.bvh, &rays.lanes, rays.count);
     if frame.has_cutouts {
         let tests = CutoutTests::default();
         let solid = |prim, u, v| tests.is_solid(frame, prim, u, v);
-        frame
-            .bvh
-            .intersect_many::<Watertight, _>(rays, t_max, &solid, hits);
+        bvh.intersect_lanes(rays, count, &solid, hits);
         tests.count(counters);
     } else {
-        frame
-            .bvh
-            .intersect_many::<Watertight, _>(rays, t_max, &AcceptAll, hits);
+        bvh.intersect_lanes(rays, count, &AcceptAll, hits);
     }
 }
 
-/// Whether anything solid lies before `t_max` on each ray. `occluded` is resized to fit.
-pub fn any_hits(
-    frame: &Frame<'_>,
-    rays: &[Ray],
-    t_max: &[f32],
-    occluded: &mut Vec<bool>,
-    counters: &mut Counters,
-) {
-    occluded.clear();
-    occluded.resize(rays.len(), false);
-    counters.shadow_rays += rays.len() as u64;
+/// Finds the shadow rays with something solid before their end.
+pub fn any_hits(frame: &Frame<'_>, count: usize, shadows: &mut Shadows, counters: &mut Counters) {
+    let (bvh, rays, occluded) = (frame.bvh, &shadows.rays, &mut shadows.occluded.0);
+    counters.shadow_rays += shadows.lit.count();
     if frame.has_cutouts {
         let tests = CutoutTests::default();
         let solid = |prim, u, v| tests.is_solid(frame, prim, u, v);
-        frame
-            .bvh
-            .occluded_many::<Watertight, _>(rays, t_max, &solid, occluded);
+        bvh.occluded_lanes(rays, count, &solid, occluded);
         tests.count(counters);
     } else {
-        frame
-            .bvh
-            .occluded_many::<Watertight, _>(rays, t_max, &AcceptAll, occluded);
+        bvh.occluded_lanes(rays, count, &AcceptAll, occluded);
     }
 }
 
@@ -64,6 +46,7 @@ pub fn any_hits(
 pub struct CutoutTests(Cell<u64>);
 
 impl CutoutTests {
+    /// Whether there is surface at this point of a triangle.
     pub fn is_solid(&self, frame: &Frame<'_>, prim: u32, u: f32, v: f32) -> bool {
         let attributes = frame.mesh.attributes[prim as usize];
         let Some(opacity) = &frame.materials[usize::from(attributes.material)].opacity else {
@@ -73,7 +56,7 @@ impl CutoutTests {
             return true;
         }
         self.0.set(self.0.get() + 1);
-        opacity.is_solid(uv_at(frame.mesh, prim, u, v))
+        opacity.is_solid(V2::from(uv_at(frame.mesh, prim, u, v)))
     }
 
     fn count(&self, counters: &mut Counters) {

@@ -195,7 +195,7 @@ mod tests {
     fn singles_survive_the_way_through_doubles() {
         let mut bits = 1_u32;
         for _ in 0..20_000 {
-            bits = crate::math::hash_u32(bits);
+            bits = crate::math::hash(bits);
             let x = f32::from_bits(bits);
             if x.is_finite() {
                 let back = single_text(x).parse::<f64>().expect("a number") as f32;

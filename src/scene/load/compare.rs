@@ -3,6 +3,7 @@
 use glam::Vec2;
 
 use super::recognise::probes;
+use crate::math::V2;
 use crate::texture::{Addressing, HeightMap, MapImage, MapRole, MapSlot, RawImage};
 
 /// Texels to either side of a probe over which slopes are averaged. Seven generated pairs of 256², bricks
@@ -143,7 +144,7 @@ impl Pair<'_> {
             Axis::V => Vec2::new(0.0, -half),
         };
         let center = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-        let height = |at: Vec2| f64::from(self.heights.sample(at / size, slot.wrap));
+        let height = |at: Vec2| f64::from(self.heights.sample(V2::from(at / size), slot.wrap));
         let gain = f64::from(if slot.invert { -slot.gain } else { slot.gain });
         let texels_per_side = f64::from((size.x * size.y).sqrt());
         let run = f64::from(2 * RUN + 1) / texels_per_side;

@@ -1,9 +1,7 @@
 //! The one door through which maps change a surface.
 
-use glam::{Vec2, Vec3};
-
 use super::{BoundHeight, BoundNormal, Derivative, Lookup, MappingSettings, Method};
-use crate::math::normalize_or;
+use crate::math::{Real, V2, V3};
 use crate::surface::SurfaceInteraction;
 
 /// Below this cosine between normal and view, plain parallax does not shift: the division by it would
@@ -132,31 +130,22 @@ impl<'a> MaterialMapping<'a> {
         shift + tilt
     }
 
-    /// Moves texture coordinates and tilts `n_shade` of every point. All of them must have texture
-    /// coordinates and lie on this material. Normals stay on the front side's terms; facing the eye is
-    /// decided later.
-    pub fn apply(&self, points: &mut [SurfaceInteraction]) {
+    /// Moves the texture coordinate and tilts `n_shade` of a point, or of one in each lane. It must have
+    /// texture coordinates and lie on this material. Normals stay on the front side's terms; facing the eye
+    /// is decided later.
+    #[inline(always)]
+    pub fn apply<F: Real>(&self, s: &mut SurfaceInteraction<F>) {
         match &self.shift {
             Shift::Stay => {}
-            Shift::Parallax(h) => points.iter_mut().for_each(|s| s.uv = parallax(h, s)),
-            Shift::Limited(h) => points
-                .iter_mut()
-                .for_each(|s| s.uv = parallax_limited(h, s)),
+            Shift::Parallax(h) => s.uv = parallax(h, s),
+            Shift::Limited(h) => s.uv = parallax_limited(h, s),
         }
         match &self.tilt {
             Tilt::Keep => {}
-            Tilt::Analytic(h) => points
-                .iter_mut()
-                .for_each(|s| s.n_shade = bumped(s, h.analytic_slope(s.uv))),
-            Tilt::Central(h) => points
-                .iter_mut()
-                .for_each(|s| s.n_shade = bumped(s, h.central_slope(s.uv))),
-            Tilt::Normal(n) => points
-                .iter_mut()
-                .for_each(|s| s.n_shade = normal_mapped(n, s)),
-            Tilt::Slope(n) => points
-                .iter_mut()
-                .for_each(|s| s.n_shade = slope_mapped(n, s)),
+            Tilt::Analytic(h) => s.n_shade = bumped(s, h.analytic_slope(s.uv)),
+            Tilt::Central(h) => s.n_shade = bumped(s, h.central_slope(s.uv)),
+            Tilt::Normal(n) => s.n_shade = normal_mapped(n, s),
+            Tilt::Slope(n) => s.n_shade = slope_mapped(n, s),
         }
     }
 }
@@ -166,65 +155,67 @@ impl<'a> MaterialMapping<'a> {
 /// `Δuv = d · (V·∇u, V·∇v) / (V·N)` with the displacement `d` in the same length unit as the gradients:
 /// the report's tangent-space form without inverting any matrix, for sheared and mirrored charts alike.
 /// Unchanged where the eye is under the surface or nearly in its plane.
+#[inline(always)]
 #[must_use]
-pub fn parallax(height: &BoundHeight<'_>, s: &SurfaceInteraction) -> Vec2 {
+pub fn parallax<F: Real>(height: &BoundHeight<'_>, s: &SurfaceInteraction<F>) -> V2<F> {
     let cos = s.wo.dot(s.n_shade);
-    if !(cos > MIN_PARALLAX_COS) {
-        return s.uv;
-    }
-    moved(s, height.displacement(s.uv) / cos)
+    let above = cos.gt(cos.splat(MIN_PARALLAX_COS));
+    moved(s, above, height.displacement(s.uv) / cos)
 }
 
 /// Parallax with offset limiting (report 2.18, Welsh 2004): without the division the shift is at most
 /// the height, and the relief flattens towards the horizon.
 ///
 /// Unchanged where the eye is under the surface.
+#[inline(always)]
 #[must_use]
-pub fn parallax_limited(height: &BoundHeight<'_>, s: &SurfaceInteraction) -> Vec2 {
-    if !(s.wo.dot(s.n_shade) > 0.0) {
-        return s.uv;
-    }
-    moved(s, height.displacement(s.uv))
+pub fn parallax_limited<F: Real>(height: &BoundHeight<'_>, s: &SurfaceInteraction<F>) -> V2<F> {
+    let cos = s.wo.dot(s.n_shade);
+    moved(s, cos.gt(cos.splat(0.0)), height.displacement(s.uv))
 }
 
-fn moved(s: &SurfaceInteraction, along_view: f32) -> Vec2 {
-    let uv = s.uv + Vec2::new(s.wo.dot(s.grad_u), s.wo.dot(s.grad_v)) * along_view;
-    if uv.is_finite() { uv } else { s.uv }
+#[inline(always)]
+fn moved<F: Real>(s: &SurfaceInteraction<F>, above: F::Mask, along_view: F) -> V2<F> {
+    let uv = s.uv + V2::new(s.wo.dot(s.grad_u), s.wo.dot(s.grad_v)) * along_view;
+    V2::select(above & uv.is_finite(), uv, s.uv)
 }
 
 /// `N' = normalize(N − d_u ∇u − d_v ∇v)` for a displacement with these derivatives by u and v.
 ///
 /// Source: Blinn 1978 in the surface-gradient form of Mikkelsen 2010; report 2.16 in physical units.
+#[inline(always)]
 #[must_use]
-pub fn bumped(s: &SurfaceInteraction, slope: Vec2) -> Vec3 {
-    normalize_or(
-        s.n_shade - s.grad_u * slope.x - s.grad_v * slope.y,
-        s.n_shade,
-    )
+pub fn bumped<F: Real>(s: &SurfaceInteraction<F>, slope: V2<F>) -> V3<F> {
+    (s.n_shade - s.grad_u * slope.x - s.grad_v * slope.y).normalize_or(s.n_shade)
 }
 
 /// `N' = normalize(m_z N + k (m_x T + m_y B))`: a tangent-space normal `m` with its slopes scaled by k.
 ///
 /// T follows +u on the triangle, made perpendicular to the smooth normal; B completes the frame on the
 /// side of +v. Where the texture has no area the normal stays.
+#[inline(always)]
 #[must_use]
-pub fn normal_mapped(map: &BoundNormal<'_>, s: &SurfaceInteraction) -> Vec3 {
+pub fn normal_mapped<F: Real>(map: &BoundNormal<'_>, s: &SurfaceInteraction<F>) -> V3<F> {
     tilted(s, map.stored(s.uv), map.strength)
 }
 
 /// `N' = normalize(N − k (h_x T + h_y B))` with slopes from red and green (report 2.4.2 and 2.16).
+#[inline(always)]
 #[must_use]
-pub fn slope_mapped(map: &BoundNormal<'_>, s: &SurfaceInteraction) -> Vec3 {
+pub fn slope_mapped<F: Real>(map: &BoundNormal<'_>, s: &SurfaceInteraction<F>) -> V3<F> {
     let stored = map.stored(s.uv);
-    tilted(s, Vec3::new(-stored.x, -stored.y, 1.0), map.strength)
+    let up = stored.z.splat(1.0);
+    tilted(s, V3::new(-stored.x, -stored.y, up), map.strength)
 }
 
-fn tilted(s: &SurfaceInteraction, m: Vec3, strength: f32) -> Vec3 {
+#[inline(always)]
+fn tilted<F: Real>(s: &SurfaceInteraction<F>, m: V3<F>, strength: f32) -> V3<F> {
     let n = s.n_shade;
-    let tangent = normalize_or(s.dp_du - n * n.dot(s.dp_du), Vec3::ZERO);
-    if tangent == Vec3::ZERO || s.handedness == 0.0 {
-        return n;
-    }
+    let zero = s.handedness.splat(0.0);
+    let none = V3::new(zero, zero, zero);
+    let tangent = (s.dp_du - n * n.dot(s.dp_du)).normalize_or(none);
     let bitangent = n.cross(tangent) * s.handedness;
-    normalize_or(n * m.z + (tangent * m.x + bitangent * m.y) * strength, n)
+    let tilted = n * m.z + (tangent * m.x + bitangent * m.y) * zero.splat(strength);
+    let has_frame = tangent.dot(tangent).gt(zero) & !s.handedness.eq(zero);
+    V3::select(has_frame, tilted.normalize_or(n), n)
 }

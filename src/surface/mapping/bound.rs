@@ -1,7 +1,8 @@
 //! Maps tied to one material: all constants folded, ready for a tile's loops.
 
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
+use crate::math::{Real, V2, V3};
 use crate::texture::{Addressing, HeightMap, NormalMap, Wrap};
 
 /// A height map with its amplitude: `displacement = stored · scale + offset`, internal units along the
@@ -23,31 +24,29 @@ pub struct BoundHeight<'a> {
 
 impl BoundHeight<'_> {
     /// Displacement along the normal at `uv`, internal units; positive is outwards.
+    #[inline(always)]
     #[must_use]
-    pub fn displacement(&self, uv: Vec2) -> f32 {
-        self.map
-            .sample(self.addressing.st(uv), self.addressing.wrap)
-            * self.scale
-            + self.offset
+    pub fn displacement<F: Real>(&self, uv: V2<F>) -> F {
+        let st = self.addressing.st(uv);
+        self.map.sample(st, self.addressing.wrap) * self.scale + self.offset
     }
 
     /// Derivatives of the displacement by u and v: exact for the bilinear height.
+    #[inline(always)]
     #[must_use]
-    pub fn analytic_slope(&self, uv: Vec2) -> Vec2 {
-        let slope = self
-            .map
-            .sample_slope(self.addressing.st(uv), self.addressing.wrap)
-            .slope_st;
-        slope * self.addressing.scale * self.scale
+    pub fn analytic_slope<F: Real>(&self, uv: V2<F>) -> V2<F> {
+        let st = self.addressing.st(uv);
+        let found = self.map.sample_slope(st, self.addressing.wrap);
+        found.slope_st.times(self.addressing.scale * self.scale)
     }
 
     /// The same by the report's central differences (2.15).
+    #[inline(always)]
     #[must_use]
-    pub fn central_slope(&self, uv: Vec2) -> Vec2 {
-        let slope = self
-            .map
-            .central_slope(self.addressing.st(uv), self.addressing.wrap);
-        slope * self.addressing.scale * self.scale
+    pub fn central_slope<F: Real>(&self, uv: V2<F>) -> V2<F> {
+        let st = self.addressing.st(uv);
+        let slope = self.map.central_slope(st, self.addressing.wrap);
+        slope.times(self.addressing.scale * self.scale)
     }
 }
 
@@ -66,28 +65,24 @@ pub struct BoundNormal<'a> {
 
 impl BoundNormal<'_> {
     /// Stored vector at `uv`, x along +u and y along +v, before `strength`.
+    #[inline(always)]
     #[must_use]
-    pub fn stored(&self, uv: Vec2) -> Vec3 {
+    pub fn stored<F: Real>(&self, uv: V2<F>) -> V3<F> {
         let st = self.addressing.st(uv);
         let m = self.map.sample(st, self.addressing.wrap);
-        let signs = if self.addressing.wrap == Wrap::Mirror {
-            self.signs * mirror_signs(st)
+        let (x, y) = (m.x * self.signs.x, m.y * self.signs.y);
+        if self.addressing.wrap == Wrap::Mirror {
+            V3::new(unmirrored(x, st.x), unmirrored(y, st.y), m.z)
         } else {
-            self.signs
-        };
-        Vec3::new(m.x * signs.x, m.y * signs.y, m.z)
+            V3::new(x, y, m.z)
+        }
     }
 }
 
 /// In every other copy of a mirrored picture its slopes point the other way.
-fn mirror_signs(st: Vec2) -> Vec2 {
-    let sign = |c: f32| {
-        if (c * 0.5).fract().abs() >= 0.5 {
-            -1.0
-        } else {
-            1.0
-        }
-    };
-    let floor = st.floor();
-    Vec2::new(sign(floor.x), sign(floor.y))
+#[inline(always)]
+fn unmirrored<F: Real>(slope: F, c: F) -> F {
+    let half = c.floor() * 0.5;
+    let is_copy = !half.floor().eq(half);
+    F::select(is_copy, -slope, slope)
 }

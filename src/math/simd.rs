@@ -1,12 +1,12 @@
-//! Which vector instructions the bundle kernels use: the one door to `fearless_simd`.
+//! Which vector instructions the kernels use: the one door to `fearless_simd`.
 
 use std::fmt;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use fearless_simd::{Level, dispatch};
 
-pub(super) use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8};
-pub(super) use fearless_simd::{SimdNarrow, SimdWiden};
+pub(crate) use fearless_simd::{Bytes, Select, Simd, SimdBase, SimdFloat, SimdMask};
+pub(crate) use fearless_simd::{ExtractToken, SimdCvtFloat, SimdNarrow, SimdWiden, f32x8};
 
 /// A set of vector instructions. All give the same bits; they differ in speed alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -82,12 +82,19 @@ impl SimdLevel {
 
     /// Runs a kernel compiled for this level; `false` if there is none, as for [`Self::Scalar`].
     #[inline]
-    pub(super) fn run(self, kernel: impl Kernel) -> bool {
+    pub(crate) fn run(self, kernel: impl Kernel) -> bool {
         let Some(token) = self.token() else {
             return false;
         };
         dispatch!(token, simd => kernel.run(simd));
         true
+    }
+
+    /// [`Self::run`]; for levels without instructions, the kernel in plain code.
+    #[inline]
+    pub(crate) fn run_or_plain(self, kernel: impl Kernel) {
+        let token = self.token().unwrap_or_else(Level::fallback);
+        dispatch!(token, simd => kernel.run(simd));
     }
 
     /// The proof that the processor has the instructions.
@@ -135,7 +142,7 @@ impl fmt::Display for SimdLevel {
 ///
 /// Everything that `run` calls with a [`Simd`] must be `#[inline(always)]` and free of closures over
 /// vectors: a function that is left standing alone is compiled without the level's instructions.
-pub(super) trait Kernel {
+pub(crate) trait Kernel {
     /// The work.
     fn run<S: Simd>(self, simd: S);
 }

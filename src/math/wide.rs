@@ -1,0 +1,228 @@
+//! [`Real`] for the vectors of a machine.
+
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+use super::real::{Bits, Mask, Real};
+use super::simd::{
+    Bytes as _, ExtractToken as _, Select as _, Simd, SimdBase, SimdCvtFloat as _, SimdFloat,
+    SimdMask,
+};
+
+/// Most lanes that a vector of any machine has.
+const MAX_LANES: usize = 16;
+
+/// As many numbers as a vector has lanes.
+#[derive(Debug, Clone, Copy)]
+pub struct Wide<S: Simd>(pub S::f32s);
+
+/// Yes or no for each lane of a [`Wide`].
+#[derive(Clone, Copy)]
+pub struct WideMask<S: Simd>(pub S::mask32s);
+
+/// 32 bits for each lane of a [`Wide`].
+#[derive(Debug, Clone, Copy)]
+pub struct WideBits<S: Simd>(pub S::u32s);
+
+impl<S: Simd> Wide<S> {
+    /// `x` in each lane.
+    #[inline(always)]
+    pub fn new(simd: S, x: f32) -> Self {
+        Self(S::f32s::splat(simd, x))
+    }
+}
+
+macro_rules! operators {
+    ($($trait:ident $method:ident $operator:tt),*) => {$(
+        impl<S: Simd> $trait for Wide<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, o: Self) -> Self {
+                Self(self.0 $operator o.0)
+            }
+        }
+    )*};
+}
+operators!(Add add +, Sub sub -, Mul mul *, Div div /);
+
+macro_rules! operators_with_one {
+    ($($trait:ident $method:ident $operator:tt),*) => {$(
+        impl<S: Simd> $trait<f32> for Wide<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, x: f32) -> Self {
+                Self(self.0 $operator x)
+            }
+        }
+    )*};
+}
+operators_with_one!(Add add +, Sub sub -, Mul mul *);
+
+impl<S: Simd> Neg for Wide<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl<S: Simd> BitAnd for WideMask<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, o: Self) -> Self {
+        Self(self.0 & o.0)
+    }
+}
+impl<S: Simd> BitOr for WideMask<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, o: Self) -> Self {
+        Self(self.0 | o.0)
+    }
+}
+impl<S: Simd> Not for WideMask<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(!self.0)
+    }
+}
+
+impl<S: Simd> Mask for WideMask<S> {
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.0.any_true()
+    }
+    #[inline(always)]
+    fn all(self) -> bool {
+        self.0.all_true()
+    }
+}
+
+impl<S: Simd> Real for Wide<S> {
+    type Mask = WideMask<S>;
+    type Bits = WideBits<S>;
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> Self {
+        Self::new(self.0.token(), x)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt())
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.abs())
+    }
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        Self(self.0.copysign(sign.0))
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        Self(self.0.floor())
+    }
+    #[inline(always)]
+    fn lt(self, o: Self) -> WideMask<S> {
+        WideMask(self.0.simd_lt(o.0))
+    }
+    #[inline(always)]
+    fn le(self, o: Self) -> WideMask<S> {
+        WideMask(self.0.simd_le(o.0))
+    }
+    #[inline(always)]
+    fn eq(self, o: Self) -> WideMask<S> {
+        WideMask(self.0.simd_eq(o.0))
+    }
+    #[inline(always)]
+    fn select(mask: WideMask<S>, yes: Self, no: Self) -> Self {
+        Self(mask.0.select(yes.0, no.0))
+    }
+    #[inline(always)]
+    fn to_bits(self) -> WideBits<S> {
+        WideBits(self.0.bitcast())
+    }
+    #[inline(always)]
+    fn to_index(self) -> WideBits<S> {
+        // Through signed integers, which machines before AVX-512 convert in one instruction.
+        WideBits(self.0.to_int::<S::i32s>().bitcast())
+    }
+}
+
+impl<S: Simd> Bits for WideBits<S> {
+    type Real = Wide<S>;
+
+    #[inline(always)]
+    fn splat(self, x: u32) -> Self {
+        Self(S::u32s::splat(self.0.token(), x))
+    }
+    #[inline(always)]
+    fn plus(self, x: u32) -> Self {
+        Self(self.0 + x)
+    }
+    #[inline(always)]
+    fn plus_each(self, o: Self) -> Self {
+        Self(self.0 + o.0)
+    }
+    #[inline(always)]
+    fn times(self, x: u32) -> Self {
+        Self(self.0 * x)
+    }
+    #[inline(always)]
+    fn and(self, x: u32) -> Self {
+        Self(self.0 & x)
+    }
+    #[inline(always)]
+    fn or(self, x: u32) -> Self {
+        Self(self.0 | x)
+    }
+    #[inline(always)]
+    fn xor_each(self, o: Self) -> Self {
+        Self(self.0 ^ o.0)
+    }
+    #[inline(always)]
+    fn or_each(self, o: Self) -> Self {
+        Self(self.0 | o.0)
+    }
+    #[inline(always)]
+    fn shl(self, by: u32) -> Self {
+        Self(self.0 << by)
+    }
+    #[inline(always)]
+    fn shr(self, by: u32) -> Self {
+        Self(self.0 >> by)
+    }
+    #[inline(always)]
+    fn select(mask: WideMask<S>, yes: Self, no: Self) -> Self {
+        Self(mask.0.select(yes.0, no.0))
+    }
+    #[inline(always)]
+    fn equals(self, x: u32) -> WideMask<S> {
+        WideMask(self.0.simd_eq(S::u32s::splat(self.0.token(), x)))
+    }
+    #[inline(always)]
+    fn to_real(self) -> Wide<S> {
+        Wide(self.0.bitcast())
+    }
+    #[inline(always)]
+    fn signed_to_real(self) -> Wide<S> {
+        let signed: S::i32s = self.0.bitcast();
+        Wide(S::f32s::float_from(signed))
+    }
+    #[inline(always)]
+    fn gather<const N: usize>(self, fetch: impl Fn(u32) -> [u32; N]) -> [Self; N] {
+        let simd = self.0.token();
+        let mut found = [[0; MAX_LANES]; N];
+        for (lane, &index) in self.0.as_slice().iter().enumerate() {
+            let one = fetch(index);
+            for n in 0..N {
+                found[n][lane % MAX_LANES] = one[n];
+            }
+        }
+        let mut wide = [Self(S::u32s::splat(simd, 0)); N];
+        for n in 0..N {
+            wide[n] = Self(S::u32s::from_slice(simd, &found[n][..S::u32s::LEN]));
+        }
+        wide
+    }
+}
