@@ -85,18 +85,18 @@ pub trait Real:
         self.abs().le(self.splat(f32::MAX))
     }
     /// The next number towards infinity where `up`, towards minus infinity where `down`, else the same.
-    /// Infinities and NaN stay.
+    /// Numbers nearer to 0 than `smallest` become that, with the sign of the step. Infinities and NaN stay.
     #[inline(always)]
     #[must_use]
-    fn stepped(self, up: Self::Mask, down: Self::Mask) -> Self {
+    fn stepped(self, up: Self::Mask, down: Self::Mask, smallest: f32) -> Self {
         let zero = self.splat(0.0);
         let bits = self.to_bits();
         // Bits count away from zero on both sides of it.
         let grows = (zero.lt(self) & up) | (self.lt(zero) & down);
         let away = Self::Bits::select(grows, bits.plus(1), bits.plus(u32::MAX));
-        let least = self.splat(f32::from_bits(1));
-        let from_zero = Self::select(up, least, -least);
-        let moved = Self::select(self.eq(zero), from_zero, away.to_real());
+        let smallest = self.splat(smallest);
+        let from_zero = Self::select(up, smallest, -smallest);
+        let moved = Self::select(self.abs().lt(smallest), from_zero, away.to_real());
         Self::select((up | down) & self.is_finite(), moved, self)
     }
 }
@@ -153,8 +153,11 @@ pub trait Bits: Copy + Debug {
     fn to_real(self) -> Self::Real;
     /// The numbers nearest to these as signed integers.
     fn signed_to_real(self) -> Self::Real;
-    /// `N` values for each lane, fetched by the index in it.
-    fn gather<const N: usize>(self, fetch: impl Fn(u32) -> [u32; N]) -> [Self; N];
+    /// `N` values for each of `K` indices in each lane.
+    fn gather<const K: usize, const N: usize>(
+        indices: [Self; K],
+        fetch: impl Fn(u32) -> [u32; N],
+    ) -> [[Self; N]; K];
 }
 
 impl Real for f32 {
@@ -278,7 +281,10 @@ impl Bits for u32 {
         self as i32 as f32
     }
     #[inline(always)]
-    fn gather<const N: usize>(self, fetch: impl Fn(u32) -> [u32; N]) -> [u32; N] {
-        fetch(self)
+    fn gather<const K: usize, const N: usize>(
+        indices: [u32; K],
+        fetch: impl Fn(u32) -> [u32; N],
+    ) -> [[u32; N]; K] {
+        indices.map(fetch)
     }
 }

@@ -210,19 +210,44 @@ impl<S: Simd> Bits for WideBits<S> {
         Wide(S::f32s::float_from(signed))
     }
     #[inline(always)]
-    fn gather<const N: usize>(self, fetch: impl Fn(u32) -> [u32; N]) -> [Self; N] {
-        let simd = self.0.token();
-        let mut found = [[0; MAX_LANES]; N];
-        for (lane, &index) in self.0.as_slice().iter().enumerate() {
-            let one = fetch(index);
+    fn gather<const K: usize, const N: usize>(
+        indices: [Self; K],
+        fetch: impl Fn(u32) -> [u32; N],
+    ) -> [[Self; N]; K] {
+        let simd = S::u32s::token(&indices[0].0);
+        let mut lanes = [[0; MAX_LANES]; K];
+        for k in 0..K {
+            indices[k].0.store_slice(&mut lanes[k][..S::u32s::LEN]);
+        }
+        let mut found = [[[0; MAX_LANES]; N]; K];
+        gather_lanes(S::u32s::LEN, &lanes, fetch, &mut found);
+        let mut wide = [[Self(S::u32s::splat(simd, 0)); N]; K];
+        for k in 0..K {
             for n in 0..N {
-                found[n][lane % MAX_LANES] = one[n];
+                wide[k][n] = Self(S::u32s::from_slice(simd, &found[k][n][..S::u32s::LEN]));
             }
         }
-        let mut wide = [Self(S::u32s::splat(simd, 0)); N];
-        for n in 0..N {
-            wide[n] = Self(S::u32s::from_slice(simd, &found[n][..S::u32s::LEN]));
-        }
         wide
+    }
+}
+
+/// `found[k][n][lane]` is the `n`-th value that `lanes[k][lane]` fetches, for the first `count` lanes.
+///
+/// Never inlined: as part of a kernel, the compiler unrolls it into thousands of insertions into vector
+/// registers that it then has to spill. That is as fast, and five times as much code for each level.
+#[inline(never)]
+fn gather_lanes<const K: usize, const N: usize>(
+    count: usize,
+    lanes: &[[u32; MAX_LANES]; K],
+    fetch: impl Fn(u32) -> [u32; N],
+    found: &mut [[[u32; MAX_LANES]; N]; K],
+) {
+    for lane in 0..count.min(MAX_LANES) {
+        for k in 0..K {
+            let values = fetch(lanes[k][lane]);
+            for n in 0..N {
+                found[k][n][lane] = values[n];
+            }
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! One tile: its share of the film, its cached hits, and its passes.
 
 use super::sites::{Sites, film_place};
-use super::stages::{self, Column, Column3, PLACES, Places, Scratch, camera, trace};
+use super::stages::{self, Column, Column3, PLACES, Places, Scratch, camera, film, trace};
 use super::{Counters, Frame};
 use crate::geometry::HitLanes;
 use crate::math::LinearRgb;
@@ -117,7 +117,8 @@ impl Tile {
             .work
             .shade_hits(frame, &scratch.hits, mirrors, &mut counters);
         scratch.follow_mirrors(frame, &mut counters);
-        self.add(sites, &active, index, &scratch.work.radiance, &mut counters);
+        let radiance = &mut scratch.work.radiance;
+        self.add(frame, sites, active, index, radiance, &mut counters);
         self.counters += counters;
     }
 
@@ -180,25 +181,26 @@ impl Tile {
         self.known = Some(self.known.map_or(stride, |known| known.min(stride)));
     }
 
-    /// Adds samples to the film.
+    /// Adds samples to the film; one that is not finite counts as black.
     fn add(
         &mut self,
+        frame: &Frame<'_>,
         sites: &Sites,
-        active: &Places,
+        active: Places,
         index: u32,
-        radiance: &Column3,
+        radiance: &mut Column3,
         counters: &mut Counters,
     ) {
-        let before = if index == 0 { 0.0 } else { 1.0 };
+        let finite = film::drop_non_finite(frame, sites.count, active, radiance);
+        counters.non_finite += (active & !finite).count();
+        if sites.count == PLACES {
+            film::add(frame, active, index == 0, radiance, &mut self.sums);
+            return;
+        }
         for place in active.iter() {
-            let sample = [0, 1, 2].map(|channel: usize| radiance[channel].0[place]);
-            let is_finite = sample.iter().all(|x| x.is_finite());
-            counters.non_finite += u64::from(!is_finite);
             let film_place = sites.film_place.0[place] as usize;
-            for (sum, x) in self.sums.iter_mut().zip(sample) {
-                let sum = &mut sum.0[film_place];
-                let sample = if is_finite { x } else { 0.0 };
-                *sum = if before == 0.0 { sample } else { *sum + sample };
+            for (sum, x) in self.sums.iter_mut().zip(&*radiance) {
+                sum.0[film_place] = x.0[place];
             }
         }
     }

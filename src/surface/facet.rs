@@ -42,14 +42,10 @@ impl<F: Real> Facet<F> {
     #[inline(always)]
     #[must_use]
     pub fn fetch(mesh: &TriangleMesh, prims: F::Bits, kind: FacetKind) -> Self {
-        let corners = prims.gather(|prim| mesh.indices[prim as usize]);
-        let [p0, p1, p2] = corners;
+        let [corners] = F::Bits::gather([prims], |prim| mesh.indices[prim as usize]);
         let point = |i: u32| mesh.positions[i as usize].to_array().map(f32::to_bits);
-        let p: [V3<F>; 3] = [
-            v3(p0.gather(point)),
-            v3(p1.gather(point)),
-            v3(p2.gather(point)),
-        ];
+        let [p0, p1, p2] = F::Bits::gather(corners, point);
+        let p: [V3<F>; 3] = [v3(p0), v3(p1), v3(p2)];
         let zero = p[0].x.splat(0.0);
         let none = V3::new(zero, zero, zero);
         let mut facet = Self {
@@ -64,15 +60,13 @@ impl<F: Real> Facet<F> {
         };
         if kind.smooth {
             let normal = |i: u32| mesh.normals[i as usize].to_array().map(f32::to_bits);
-            facet.n = [
-                v3(p0.gather(normal)),
-                v3(p1.gather(normal)),
-                v3(p2.gather(normal)),
-            ];
+            let [n0, n1, n2] = F::Bits::gather(corners, normal);
+            facet.n = [v3(n0), v3(n1), v3(n2)];
         }
         if kind.parts >= SurfaceParts::Uv {
             let uv = |i: u32| mesh.uvs[i as usize].to_array().map(f32::to_bits);
-            facet.uv = [v2(p0.gather(uv)), v2(p1.gather(uv)), v2(p2.gather(uv))];
+            let [t0, t1, t2] = F::Bits::gather(corners, uv);
+            facet.uv = [v2(t0), v2(t1), v2(t2)];
         }
         facet.derive(kind.parts);
         facet

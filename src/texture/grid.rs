@@ -119,14 +119,8 @@ impl<T: Copy> Grid<T> {
         bits: impl Fn(T) -> [u32; B],
         decode: impl Fn([F::Bits; B]) -> [F; N],
     ) -> [[F; N]; 4] {
-        let [a, b, c, d] = cell.texels;
-        let fetch = |index| bits(self.texel(index));
-        [
-            decode(a.gather(&fetch)),
-            decode(b.gather(&fetch)),
-            decode(c.gather(&fetch)),
-            decode(d.gather(&fetch)),
-        ]
+        let [a, b, c, d] = F::Bits::gather(cell.texels, |index| bits(self.texel(index)));
+        [decode(a), decode(b), decode(c), decode(d)]
     }
 }
 

@@ -8,6 +8,7 @@
 
 pub mod bounce;
 pub mod camera;
+pub mod film;
 pub mod light;
 pub mod surface;
 pub mod trace;

@@ -4,7 +4,8 @@ use super::super::material::FrameMaterial;
 use super::super::{Counters, Frame};
 use super::{PLACES, Places, Rays, Run, Surfaces, get3, groups, set, set_rgb, set3};
 use crate::geometry::{HitLanes, NO_HIT};
-use crate::math::simd::{Kernel, Simd};
+use crate::math::lanes::ones;
+use crate::math::simd::{Kernel, Simd, SimdBase as _, SimdMask as _};
 use crate::math::wide::{Wide, WideBits, WideMask};
 use crate::math::{Bits as _, LinearRgb, Mask as _, Real as _, V3};
 use crate::surface::{Facet, FacetKind, SurfaceInteraction, SurfaceParts, surface_on};
@@ -17,7 +18,12 @@ pub fn mapped_surfaces(
     surfaces: &mut Surfaces,
     counters: &mut Counters,
 ) {
-    find_runs(frame, rays, hits, &mut surfaces.runs);
+    frame.level.run_or_plain(FindRuns {
+        frame,
+        rays,
+        hits,
+        runs: &mut surfaces.runs,
+    });
     for run in 0..surfaces.runs.len() {
         let run = surfaces.runs[run];
         count(&frame.materials[run.material], &run, counters);
@@ -32,36 +38,64 @@ pub fn mapped_surfaces(
 }
 
 /// Cuts the places that hit something up by material and kind of triangle.
-fn find_runs(frame: &Frame<'_>, rays: &Rays, hits: &HitLanes<PLACES>, runs: &mut Vec<Run>) {
-    runs.clear();
-    let mut last = 0;
-    for place in rays.active.iter() {
-        let prim = hits.prim.0[place];
-        if prim == NO_HIT {
-            continue;
-        }
-        let attributes = frame.mesh.attributes[prim as usize];
-        if runs
-            .get(last)
-            .is_none_or(|run| run.attributes != attributes)
-        {
-            let known = runs.iter().position(|run| run.attributes == attributes);
-            last = known.unwrap_or(runs.len());
-            if last == runs.len() {
-                let material = usize::from(attributes.material);
-                runs.push(Run {
-                    attributes,
-                    material,
-                    kind: FacetKind {
-                        smooth: attributes.smooth,
-                        parts: frame.materials[material].parts(attributes.has_uv),
-                    },
-                    places: Places::EMPTY,
-                });
+struct FindRuns<'a> {
+    frame: &'a Frame<'a>,
+    rays: &'a Rays,
+    hits: &'a HitLanes<PLACES>,
+    runs: &'a mut Vec<Run>,
+}
+
+impl Kernel for FindRuns<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        self.runs.clear();
+        let mut last = (NO_HIT, 0);
+        for group in 0..groups::<S>(self.rays.count) {
+            let prims = self.hits.prim.get(simd, group);
+            let hit = self.rays.active.mask(simd, group) & !prims.equals(NO_HIT);
+            // On large triangles whole groups lie on one.
+            if !(hit & !prims.equals(last.0)).any() {
+                if let Some(run) = self.runs.get_mut(last.1) {
+                    run.places.add(group, hit);
+                }
+                continue;
+            }
+            let first = group * S::f32s::LEN;
+            for lane in ones(hit.0.to_bitmask()) {
+                let prim = prims.0.as_slice()[lane];
+                if prim != last.0 {
+                    last = (prim, run_of(self.frame, prim, self.runs, last.1));
+                }
+                self.runs[last.1].places.insert(first + lane);
             }
         }
-        runs[last].places.insert(place);
     }
+}
+
+/// Index of the run that a triangle's points belong to, perhaps `likely`.
+#[inline]
+fn run_of(frame: &Frame<'_>, prim: u32, runs: &mut Vec<Run>, likely: usize) -> usize {
+    let attributes = frame.mesh.attributes[prim as usize];
+    if runs
+        .get(likely)
+        .is_some_and(|run| run.attributes == attributes)
+    {
+        return likely;
+    }
+    let known = runs.iter().position(|run| run.attributes == attributes);
+    known.unwrap_or_else(|| {
+        let material = usize::from(attributes.material);
+        runs.push(Run {
+            attributes,
+            material,
+            kind: FacetKind {
+                smooth: attributes.smooth,
+                parts: frame.materials[material].parts(attributes.has_uv),
+            },
+            places: Places::EMPTY,
+        });
+        runs.len() - 1
+    })
 }
 
 /// Counts the look-ups that a run costs.
@@ -125,7 +159,6 @@ impl MapRun<'_> {
         (mask, lane): (WideMask<S>, usize),
         last: &mut Option<(u32, Facet)>,
     ) -> Facet<Wide<S>> {
-        use crate::math::simd::SimdBase as _;
         let (mesh, kind) = (self.frame.mesh, self.run.kind);
         let prim = prims.0.as_slice()[lane];
         if !(prims.equals(prim) | !mask).all() {
