@@ -147,12 +147,49 @@ fn width_and_area(mesh: &TriangleMesh, prim: usize) -> Option<[f64; 2]> {
 }
 
 /// The value at which half of the weight is reached; `samples` are values and weights.
+///
+/// Hoare's selection with weights: large models have a sample for every triangle, and sorting them all
+/// would take longer than finding them.
 fn weighted_median(mut samples: Vec<[f64; 2]>) -> Option<f64> {
-    samples.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let half = samples.iter().map(|s| s[1]).sum::<f64>() * 0.5;
-    let mut weight = 0.0;
-    samples.iter().find_map(|s| {
-        weight += s[1];
-        (weight >= half).then_some(s[0])
-    })
+    let weight = |samples: &[[f64; 2]]| samples.iter().map(|s| s[1]).sum::<f64>();
+    let half = weight(&samples) * 0.5;
+    let (mut rest, mut below) = (&mut samples[..], 0.0);
+    while rest.len() > 1 {
+        let middle = rest.len() / 2;
+        rest.select_nth_unstable_by(middle, |a, b| {
+            a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
+        });
+        let (left, right) = rest.split_at_mut(middle);
+        let with_left = below + weight(left);
+        rest = if with_left >= half {
+            left
+        } else {
+            below = with_left;
+            right
+        };
+    }
+    rest.first().map(|s| s[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_of_the_weight_is_at_the_median_or_below() {
+        assert_eq!(weighted_median(Vec::new()), None);
+        for count in 1..60_u32 {
+            let sample = |i| [f64::from(i * 37 % 61 / 2), f64::from(1 + i * 11 % 7)];
+            let samples: Vec<_> = (0..count).map(sample).collect();
+            let mut sorted = samples.clone();
+            sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            let half = sorted.iter().map(|s| s[1]).sum::<f64>() * 0.5;
+            let mut weight = 0.0;
+            let expected = sorted.iter().find(|s| {
+                weight += s[1];
+                weight >= half
+            });
+            assert_eq!(weighted_median(samples), expected.map(|s| s[0]), "{count}");
+        }
+    }
 }
