@@ -1,14 +1,18 @@
 //! Amplitudes where files give none: a share of the tile's width on the model, or what a normal map shows.
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
 use super::compare::compare;
-use crate::geometry::{Normalization, TriangleMesh};
+use crate::geometry::{Normalization, TriangleAttributes, TriangleMesh};
 use crate::shading::Material;
 use crate::texture::{MapImage, MapRole, MapSlot};
 
 /// Natural reliefs measure one to two hundredths of their tile; 0.05 already gives bricks near-vertical walls.
 const DEFAULT_SHARE: f64 = 0.02;
+
+/// Triangles that a thread takes at a time.
+const PIECE: usize = 8192;
 
 /// Fills in what a material's files leave open, once the mesh is there; says so in slots and in notes.
 ///
@@ -113,16 +117,27 @@ fn median_widths(
     normalization: &Normalization,
 ) -> Vec<Option<f64>> {
     let mut samples: Vec<Vec<[f64; 2]>> = vec![Vec::new(); count];
-    for (prim, attributes) in mesh.attributes.iter().enumerate() {
-        let Some(of_material) = samples.get_mut(usize::from(attributes.material)) else {
-            continue;
-        };
-        if attributes.has_uv && !mesh.uvs.is_empty() {
-            of_material.extend(width_and_area(mesh, prim));
+    let pieces: Vec<Vec<_>> = mesh
+        .attributes
+        .par_chunks(PIECE)
+        .enumerate()
+        .map(|(piece, attributes)| {
+            let with_uv = (piece * PIECE..)
+                .zip(attributes)
+                .filter(|(_, a)| a.has_uv && !mesh.uvs.is_empty());
+            let sample = |(prim, a): (usize, &TriangleAttributes)| {
+                width_and_area(mesh, prim).map(|sample| (usize::from(a.material), sample))
+            };
+            with_uv.filter_map(sample).collect()
+        })
+        .collect();
+    for (material, sample) in pieces.into_iter().flatten() {
+        if let Some(of_material) = samples.get_mut(material) {
+            of_material.push(sample);
         }
     }
     samples
-        .into_iter()
+        .into_par_iter()
         .map(|s| weighted_median(s).map(|w| w / normalization.scale))
         .collect()
 }

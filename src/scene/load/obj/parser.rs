@@ -7,7 +7,7 @@ use glam::{DVec3, Vec2, Vec3};
 
 use super::chunks::{Chunk, Count};
 use super::keywords::{is_display, is_freeform};
-use super::lines::{Words, name, shown, split_keyword};
+use super::lines::{Words, is_blank, name, shown, split_keyword};
 use super::notes::Kind;
 use super::number::{float, integer};
 use super::part::{Part, PartSpan, UsedMaterial, too_many_vertices};
@@ -171,8 +171,16 @@ impl<'a> Parser<'a> {
     fn face(&mut self, line: usize, rest: &[u8]) -> Result<(), LoadError> {
         let start = self.part.corners.len();
         let mut bad = BadWords::default();
-        for word in Words(rest) {
-            self.corner(word, &mut bad);
+        let mut words = Words(rest);
+        loop {
+            if let Some((corner, behind)) = plain_corner(words.0) {
+                self.part.corners.push(corner);
+                words.0 = behind;
+            } else if let Some(word) = words.next() {
+                self.corner(word, &mut bad);
+            } else {
+                break;
+            }
         }
         let notes = &mut self.part.notes;
         let too_few = self.part.corners.len() - start < 3;
@@ -268,6 +276,44 @@ impl<'a> Parser<'a> {
         self.material = Some(index);
         index
     }
+}
+
+/// The corner that comes next, and what is behind it, where it is written as most are: `1`, `1/2`, `1//3` or
+/// `1/2/3` with short positive numbers. `None` does not mean that anything is wrong.
+#[inline(always)]
+fn plain_corner(text: &[u8]) -> Option<(Corner, &[u8])> {
+    let blanks = text.iter().take_while(|b| is_blank(**b)).count();
+    let (v, rest) = plain_index(&text[blanks..])?;
+    let (mut vt, mut vn, mut rest) = (NONE, NONE, rest);
+    if let [b'/', behind @ ..] = rest {
+        (vt, rest) = plain_index(behind)?;
+        if let [b'/', behind @ ..] = rest {
+            (vn, rest) = plain_index(behind)?;
+        }
+    }
+    let ends = rest.first().is_none_or(|b| is_blank(*b));
+    (v != NONE && ends).then_some((Corner { v, vt, vn }, rest))
+}
+
+/// An index from 1 of up to nine digits as one from 0, or [`NONE`] where there is no digit; and what is behind.
+#[inline(always)]
+fn plain_index(text: &[u8]) -> Option<(u32, &[u8])> {
+    let (mut value, mut length) = (0, 0);
+    while let Some(digit) = text.get(length).map(|b| b.wrapping_sub(b'0'))
+        && digit < 10
+    {
+        if length == 9 {
+            return None;
+        }
+        value = value * 10 + u32::from(digit);
+        length += 1;
+    }
+    let index = match (length, value) {
+        (0, _) => NONE,
+        (_, 0) => return None,
+        (_, from_one) => from_one - 1,
+    };
+    Some((index, &text[length..]))
 }
 
 /// An index of a corner: [`NONE`] where absent or empty, `None` where not usable. Positive ones may point
