@@ -19,7 +19,7 @@ use super::status::{self, Progress, Status};
 use super::toasts::Toasts;
 use super::viewport::{self, Framebuffer, ViewportClick};
 use super::worker::{FirstPass, Refinement, RenderNote, RenderRequest, RenderWorker};
-use super::{ViewOptions, light_markers, theme, windows};
+use super::{ViewOptions, light_markers, loading, theme, windows};
 use crate::render::{Progressive, Snapshot, probe};
 use crate::scene::built_in::SCENES;
 use crate::scene::file::{SceneView, write_scene};
@@ -120,7 +120,7 @@ impl ViewerApp {
     /// Whether something is being loaded.
     #[must_use]
     pub fn is_loading(&self) -> bool {
-        self.loader.progress().is_some()
+        self.loader.is_loading()
     }
 
     /// The shown picture.
@@ -193,7 +193,11 @@ impl ViewerApp {
                 self.toasts.error(error.to_string());
             }
         }
-        // A first input that failed leaves an empty window; once, the built-in scene fills it.
+        self.fill_empty_window();
+    }
+
+    /// A first input that failed leaves an empty window; once, the built-in scene fills it.
+    fn fill_empty_window(&mut self) {
         if self.doc.is_none() && !self.fallback {
             self.fallback = true;
             self.open(first_scene());
@@ -410,13 +414,6 @@ impl ViewerApp {
             // So that the figure falls to zero when nothing moves any more.
             ctx.request_repaint_after(Duration::from_millis(500));
         }
-        let loading = self.loader.progress().map(|(path, fraction)| {
-            let name = path.file_name().unwrap_or(path.as_os_str());
-            (name.to_string_lossy().into_owned(), fraction)
-        });
-        if loading.is_some() {
-            ctx.request_repaint_after(Duration::from_millis(60));
-        }
         let doc = self.doc.as_ref();
         let status = Status {
             stats: &stats,
@@ -427,11 +424,19 @@ impl ViewerApp {
             triangles: doc.map_or(0, |doc| doc.scene.facts.triangles),
             method: doc.map_or("", |doc| doc.settings.mapping.method.info().label),
             exposure_ev: doc.map_or(0.0, |doc| doc.display.exposure_ev),
-            loading,
         };
-        if status::status_ui(ctx, window, &status) {
+        status::status_ui(ctx, window, &status);
+    }
+
+    fn loading_ui(&mut self, ctx: &egui::Context) {
+        let loading = self.loader.progress();
+        if loading.is_some() {
+            ctx.request_repaint_after(Duration::from_millis(60));
+        }
+        if loading::loading_ui(ctx, loading.as_ref(), self.doc.is_none()) {
             self.loader.cancel();
             self.toasts.note("Loading was cancelled.");
+            self.fill_empty_window();
         }
     }
 
@@ -439,9 +444,7 @@ impl ViewerApp {
         windows::help_ui(ctx, &mut self.state.help);
         windows::story_ui(ctx, &mut self.state.story);
         self.toasts.show_ui(ctx, status::HEIGHT);
-        if self.doc.is_none() && self.is_loading() {
-            windows::cover(ctx, window, "Loading…");
-        }
+        self.loading_ui(ctx);
         windows::drop_hint_ui(ctx, window);
     }
 

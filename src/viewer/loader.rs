@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
+use super::loading::Loading;
 use crate::scene::load::{LoadMonitor, LoadOptions, PictureError, PictureStore};
 use crate::scene::{LoadError, LoadedScene, Scene, open};
 
@@ -129,12 +130,28 @@ impl Loader {
         }
     }
 
-    /// What is loading, and how much of it is done (0…1).
+    /// What is loading, the scene first.
     #[must_use]
-    pub fn progress(&self) -> Option<(&Path, f32)> {
-        let scene = self.scene.as_ref();
-        let scene = scene.map(|active| (&*active.input, active.monitor.fraction()));
-        scene.or_else(|| self.pictures.first().map(|(path, _)| (&**path, 0.0)))
+    pub fn progress(&self) -> Option<Loading> {
+        let name = |path: &Path| {
+            let name = path.file_name().unwrap_or(path.as_os_str());
+            name.to_string_lossy().into_owned()
+        };
+        let scene = self.scene.as_ref().map(|active| Loading {
+            name: name(&active.input),
+            progress: Some((active.monitor.stage(), active.monitor.fraction())),
+        });
+        let picture = self.pictures.first().map(|(path, _)| Loading {
+            name: name(path),
+            progress: None,
+        });
+        scene.or(picture)
+    }
+
+    /// Whether anything is loading.
+    #[must_use]
+    pub const fn is_loading(&self) -> bool {
+        self.scene.is_some() || !self.pictures.is_empty()
     }
 
     /// Something that is done, once.

@@ -2,7 +2,7 @@
 //!
 //! - `app`: the frame loop: collect what the threads brought, take input, draw, send what changed
 //! - `worker`: the rendering thread
-//! - `loader`, `dialogs`: files, on threads of their own
+//! - `loader`, `loading`, `dialogs`: files, on threads of their own, and how far they are
 //! - `document`: what is open, and undo
 //! - `viewport`, `picking`, `light_markers`: the mouse in the picture
 //! - `panels`, `status`, `windows`, `toasts`, `widgets`, `color_edit`, `theme`: what is drawn over it
@@ -18,6 +18,7 @@ mod dialogs;
 pub mod document;
 mod light_markers;
 mod loader;
+mod loading;
 mod meter;
 mod pacing;
 pub mod panels;

@@ -85,12 +85,10 @@ pub struct Status<'a> {
     pub method: &'a str,
     /// Stops.
     pub exposure_ev: f32,
-    /// What is loading, and its share done.
-    pub loading: Option<(String, f32)>,
 }
 
-/// Draws the line along the bottom; returns whether the load is to be cancelled.
-pub fn status_ui(ctx: &egui::Context, window: Rect, status: &Status<'_>) -> bool {
+/// Draws the line along the bottom.
+pub fn status_ui(ctx: &egui::Context, window: Rect, status: &Status<'_>) {
     let frame = egui::Frame::new()
         .fill(Color32::from_rgba_unmultiplied(16, 17, 19, 232))
         .inner_margin(egui::Margin::symmetric(12, 0));
@@ -99,18 +97,15 @@ pub fn status_ui(ctx: &egui::Context, window: Rect, status: &Status<'_>) -> bool
         .order(Order::Middle)
         .constrain(false)
         .show(ctx, |ui| {
-            frame
-                .show(ui, |ui| {
-                    ui.set_width(window.width() - 24.0);
-                    ui.set_height(HEIGHT);
-                    ui.horizontal_centered(|ui| line_ui(ui, status)).inner
-                })
-                .inner
-        })
-        .inner
+            frame.show(ui, |ui| {
+                ui.set_width(window.width() - 24.0);
+                ui.set_height(HEIGHT);
+                ui.horizontal_centered(|ui| line_ui(ui, status));
+            });
+        });
 }
 
-fn line_ui(ui: &mut Ui, status: &Status<'_>) -> bool {
+fn line_ui(ui: &mut Ui, status: &Status<'_>) {
     let stats = status.stats;
     // Room for what matters most first; a narrow window cuts the end off.
     let fps = status.shown_per_sec;
@@ -179,28 +174,12 @@ fn line_ui(ui: &mut Ui, status: &Status<'_>) -> bool {
             "Samples that were not finite and counted as black",
         );
     }
-    loading_ui(ui, status.loading.as_ref())
 }
 
 fn item_ui(ui: &mut Ui, text: &str, color: Color32, hint: &str) {
     ui.add_space(5.0);
     ui.label(RichText::new(text).monospace().color(color))
         .on_hover_text(hint);
-}
-
-fn loading_ui(ui: &mut Ui, loading: Option<&(String, f32)>) -> bool {
-    let Some((name, fraction)) = loading else {
-        return false;
-    };
-    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        let cancel = ui.button("Cancel loading").clicked();
-        let bar = egui::ProgressBar::new(*fraction)
-            .desired_width(150.0)
-            .text(format!("Loading {name}"));
-        ui.add(bar);
-        cancel
-    })
-    .inner
 }
 
 /// Rays of all kinds per second of the last pass.

@@ -1,4 +1,4 @@
-//! Small windows over the picture: keys and mouse, a pixel's story, and what covers everything.
+//! Small windows over the picture: keys and mouse, a pixel's story, and what can be dropped.
 
 use egui::{Align2, Color32, FontId, Grid, Id, LayerId, Order, Rect, RichText, ScrollArea, Window};
 
@@ -92,7 +92,7 @@ pub fn drop_hint_ui(ctx: &egui::Context, window: Rect) {
 }
 
 /// Words in the middle of a darkened window.
-pub fn cover(ctx: &egui::Context, window: Rect, text: &str) {
+fn cover(ctx: &egui::Context, window: Rect, text: &str) {
     let painter = ctx.layer_painter(LayerId::new(Order::Foreground, Id::unique("cover")));
     painter.rect_filled(window, 0.0, Color32::from_black_alpha(170));
     let font = FontId::proportional(20.0);

@@ -227,6 +227,27 @@ fn thread_count_leaves_no_trace() {
 }
 
 #[test]
+fn a_watched_build_stops_when_told() {
+    let mesh = sphere(100);
+    let shares = std::sync::Mutex::new(Vec::new());
+    let note = |share: f32| {
+        shares.lock().unwrap().push(share);
+        Ok::<_, ()>(())
+    };
+    let watched = Bvh::build_watched(&mesh, &note).unwrap();
+    assert!(watched.same_tree(&Bvh::build(&mesh)));
+    let shares = shares.into_inner().unwrap();
+    assert!(shares.len() > 5 && shares[0] == 0.0 && shares.contains(&1.0));
+
+    for limit in [0.0, 0.5, 1.0] {
+        let stop = |share: f32| if share < limit { Ok(()) } else { Err(limit) };
+        assert_eq!(Bvh::build_watched(&mesh, &stop).err(), Some(limit));
+    }
+    let never = Bvh::build_watched(&TriangleMesh::default(), &|_| Err(()));
+    assert!(never.is_err());
+}
+
+#[test]
 fn nothing_to_hit() {
     let empty = Bvh::build(&TriangleMesh::default());
     empty.validate(&TriangleMesh::default()).unwrap();

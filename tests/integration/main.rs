@@ -9,6 +9,7 @@ mod bvh;
 mod cli;
 mod golden;
 mod layering;
+mod load_large;
 mod load_mtl;
 mod load_obj;
 mod mapping;

@@ -1,50 +1,33 @@
-//! Binary tree by the binned surface area heuristic. The one place here that knows rayon.
+//! Binary tree by the binned surface area heuristic, on the current rayon pool.
 //!
 //! Nothing depends on the number of threads: boxes are unions, which are exact in any order, and each
 //! subtree is a function of its own triangles alone.
 //!
+//! Each level reads the triangles twice: once into bins, once to part them. The bins hold the boxes of the
+//! parts, and parting gathers the boxes of their centres, so that the next level can start at once.
+//!
 //! Source: Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies".
 
-use glam::Vec3;
+mod bins;
+mod prim;
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
 use rayon::prelude::*;
 
+use super::node::Block;
 use crate::geometry::triangle::LANES;
 use crate::geometry::{Aabb, TriangleMesh};
+pub(super) use bins::TRIANGLE_COST;
+use bins::{Grid, Plane, leaf_cost};
+use prim::{Box4, PrimRef};
 
-/// Cost of one triangle in units of one node visit.
-///
-/// Low, because eight are tested at once: it makes full leaves, which measured up to 1.9 times faster
-/// than thin ones.
-pub(super) const TRIANGLE_COST: f32 = 0.2;
-/// Bins per axis.
-const BINS: usize = 16;
 /// Below this many triangles a task is not worth sharing.
 const PARALLEL_MIN: usize = 4096;
 /// From this depth on triangles are halved, so that no input makes a deep tree. Halving 2³² triangles
 /// takes at most 32 more levels.
 const MAX_SAH_DEPTH: u32 = 64;
-
-/// A triangle while the tree is built.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct PrimRef {
-    bounds: Aabb,
-    /// Index in the mesh.
-    pub(super) prim: u32,
-}
-
-impl PrimRef {
-    fn new(mesh: &TriangleMesh, prim: u32) -> Self {
-        Self {
-            bounds: Aabb::from_points(mesh.corners(prim)),
-            prim,
-        }
-    }
-
-    /// Twice the centre of the box: halving it would change no comparison.
-    fn centroid(&self) -> Vec3 {
-        self.bounds.min + self.bounds.max
-    }
-}
 
 /// A binary tree over a reordered list of triangles.
 #[derive(Debug)]
@@ -57,134 +40,209 @@ pub(super) struct Tree {
 #[derive(Debug)]
 pub(super) enum Content {
     /// Up to [`LANES`] triangles: a range of the list.
-    Leaf(std::ops::Range<usize>),
+    Leaf(Range<usize>),
     /// Two halves.
     Inner(Box<[Tree; 2]>),
 }
 
-/// Builds the tree of a mesh; `None` if it has no triangles.
+/// Told the share of triangles that are in place, from any thread; says whether to go on.
+pub(super) type Watch<'a> = &'a (dyn Fn(f32) -> bool + Sync);
+
+/// Builds the tree of a mesh and the blocks of its leaves, in the order of a walk from left to right.
 ///
-/// The list holds every triangle once, in the order in which leaves refer to it.
-pub(super) fn binary_tree(mesh: &TriangleMesh) -> (Vec<PrimRef>, Option<Tree>) {
+/// No tree without triangles, or once the watch said stop.
+pub(super) fn binary_tree(mesh: &TriangleMesh, watch: Watch<'_>) -> (Option<Tree>, Vec<Block>) {
     let count = u32::try_from(mesh.len()).unwrap_or(u32::MAX);
     let mut prims: Vec<_> = (0..count)
         .into_par_iter()
         .with_min_len(PARALLEL_MIN)
         .map(|prim| PrimRef::new(mesh, prim))
         .collect();
+    let progress = Progress {
+        watch,
+        total: prims.len(),
+        placed: AtomicUsize::new(0),
+        stopped: AtomicBool::new(!watch(0.0)),
+    };
     if prims.is_empty() {
-        return (prims, None);
+        return (None, Vec::new());
     }
-    let bounds = bounds_of(&prims, |p| p.bounds);
     let root = Task {
         first: 0,
         depth: 0,
-        bounds,
+        bounds: box_of(&prims, |p| p.bounds()),
+        centroids: box_of(&prims, |p| Box4::EMPTY.with_point(p.centroid())),
+        progress: &progress,
     };
     let tree = root.build(&mut prims);
-    (prims, Some(tree))
+    if progress.is_stopped() {
+        return (None, Vec::new());
+    }
+    let mut leaves = Vec::with_capacity(prims.len() / (LANES / 2) + 1);
+    tree.list_leaves(&mut leaves);
+    let blocks = leaves
+        .into_par_iter()
+        .with_min_len(PARALLEL_MIN / LANES)
+        .map(|leaf: Range<u32>| {
+            let prims = &prims[leaf.start as usize..leaf.end as usize];
+            Block::new(mesh, prims.iter().map(PrimRef::index))
+        })
+        .collect();
+    (Some(tree), blocks)
+}
+
+impl Tree {
+    /// Ranges of all leaves from left to right.
+    fn list_leaves(&self, leaves: &mut Vec<Range<u32>>) {
+        match &self.content {
+            Content::Leaf(range) => leaves.push(range.start as u32..range.end as u32),
+            Content::Inner(halves) => halves.iter().for_each(|half| half.list_leaves(leaves)),
+        }
+    }
+}
+
+/// How far the build is, and whether it shall stop.
+struct Progress<'a> {
+    watch: Watch<'a>,
+    total: usize,
+    placed: AtomicUsize,
+    stopped: AtomicBool,
+}
+
+impl Progress<'_> {
+    fn is_stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+
+    fn add(&self, triangles: usize) {
+        let placed = self.placed.fetch_add(triangles, Ordering::Relaxed) + triangles;
+        if !(self.watch)(placed as f32 / self.total as f32) {
+            self.stopped.store(true, Ordering::Relaxed);
+        }
+    }
 }
 
 /// A part of the list that is to become a subtree.
-struct Task {
+struct Task<'a> {
     /// Where the part begins in the whole list.
     first: usize,
     depth: u32,
-    bounds: Aabb,
+    bounds: Box4,
+    centroids: Box4,
+    progress: &'a Progress<'a>,
 }
 
-impl Task {
+/// Where a list was parted, and the boxes of both parts.
+struct Parts {
+    middle: usize,
+    bounds: [Box4; 2],
+    centroids: [Box4; 2],
+}
+
+impl<'a> Task<'a> {
     fn build(self, prims: &mut [PrimRef]) -> Tree {
-        let Some(middle) = self.split(prims) else {
-            return Tree {
-                bounds: self.bounds,
-                content: Content::Leaf(self.first..self.first + prims.len()),
-            };
+        let shared = prims.len() >= PARALLEL_MIN;
+        // A build that is to stop ends in leaves of any size, and nobody sees the tree.
+        if shared && self.progress.is_stopped() {
+            return self.leaf(prims.len());
+        }
+        let Some(parts) = self.split(prims) else {
+            return self.leaf(prims.len());
         };
-        let parallel = prims.len() >= PARALLEL_MIN;
-        let (left, right) = prims.split_at_mut(middle);
-        let child = |prims: &[PrimRef], first| Self {
+        let (left, right) = prims.split_at_mut(parts.middle);
+        let child = |first, side| Task {
             first,
             depth: self.depth + 1,
-            bounds: bounds_of(prims, |p| p.bounds),
+            bounds: parts.bounds[side],
+            centroids: parts.centroids[side],
+            progress: self.progress,
         };
-        let (l, r) = (child(left, self.first), child(right, self.first + middle));
-        let children = if parallel {
-            rayon::join(|| l.build(left), || r.build(right)).into()
+        let (l, r) = (child(self.first, 0), child(self.first + parts.middle, 1));
+        let halves = if shared {
+            let build = |task: Task<'a>, prims: &mut [PrimRef]| {
+                let tree = task.build(prims);
+                if prims.len() < PARALLEL_MIN {
+                    self.progress.add(prims.len());
+                }
+                tree
+            };
+            rayon::join(|| build(l, left), || build(r, right)).into()
         } else {
             [l.build(left), r.build(right)]
         };
         Tree {
-            bounds: self.bounds,
-            content: Content::Inner(Box::new(children)),
+            bounds: self.bounds.aabb(),
+            content: Content::Inner(Box::new(halves)),
         }
     }
 
-    /// Reorders `prims` into two non-empty parts and says where the second begins; `None` for a leaf.
-    fn split(&self, prims: &mut [PrimRef]) -> Option<usize> {
+    fn leaf(&self, count: usize) -> Tree {
+        Tree {
+            bounds: self.bounds.aabb(),
+            content: Content::Leaf(self.first..self.first + count),
+        }
+    }
+
+    /// Reorders `prims` into two non-empty parts; `None` for a leaf.
+    fn split(&self, prims: &mut [PrimRef]) -> Option<Parts> {
         if prims.len() == 1 {
             return None;
         }
-        let grid = Grid::new(bounds_of(prims, |p| Aabb::EMPTY.with_point(p.centroid())));
+        let grid = Grid::new(self.centroids, prims.len());
         let plane = (self.depth < MAX_SAH_DEPTH)
-            .then(|| grid.best_plane(&grid.fill(prims)))
+            .then(|| grid.best_plane(prims))
             .flatten();
         if prims.len() <= LANES {
-            let leaf_cost = leaf_cost(prims.len(), self.bounds.half_area());
-            let split_cost = plane.map_or(f32::INFINITY, |p| self.bounds.half_area() + p.cost);
-            if leaf_cost <= split_cost || split_cost.is_nan() {
+            let area = self.bounds.half_area();
+            let split_cost = plane.map_or(f32::INFINITY, |p| area + p.cost);
+            if leaf_cost(prims.len() as u32, area) <= split_cost || split_cost.is_nan() {
                 return None;
             }
         }
-        let middle = plane.map_or(0, |p| {
-            partition(prims, |prim| grid.bin(prim)[p.axis] < p.first_right)
-        });
-        // No plane, or none that parts them: coincident centres, overflowing areas.
-        Some(if middle == 0 || middle == prims.len() {
-            halve(prims, grid.longest_axis())
-        } else {
-            middle
+        // Without a plane: coincident centres, overflowing areas.
+        Some(match plane {
+            Some(plane) => partition(prims, &grid, &plane),
+            None => halve(prims, grid.longest_axis()),
         })
     }
 }
 
-/// Cost of testing `count` triangles in a box of the given half area.
-fn leaf_cost(count: usize, half_area: f32) -> f32 {
-    // A block costs the same with one triangle as with eight.
-    TRIANGLE_COST * count.next_multiple_of(LANES) as f32 * half_area
-}
-
-/// Union of what `bounds` says of each triangle.
-fn bounds_of(prims: &[PrimRef], bounds: impl Fn(&PrimRef) -> Aabb + Sync) -> Aabb {
-    let of_chunk = |chunk: &[PrimRef]| {
-        let boxes = chunk.iter().map(&bounds);
-        boxes.fold(Aabb::EMPTY, Aabb::union)
-    };
+/// Union of what `part` says of each triangle.
+fn box_of(prims: &[PrimRef], part: impl Fn(&PrimRef) -> Box4 + Sync) -> Box4 {
+    let of_chunk = |chunk: &[PrimRef]| chunk.iter().map(&part).fold(Box4::EMPTY, Box4::union);
     if prims.len() < 2 * PARALLEL_MIN {
         return of_chunk(prims);
     }
     let chunks = prims.par_chunks(PARALLEL_MIN).map(of_chunk);
-    chunks.reduce(|| Aabb::EMPTY, Aabb::union)
+    chunks.reduce(|| Box4::EMPTY, Box4::union)
 }
 
-/// Moves what is `left` to the front; returns how many.
-fn partition(prims: &mut [PrimRef], left: impl Fn(&PrimRef) -> bool) -> usize {
-    let (mut begin, mut end) = (0, prims.len());
-    while begin < end {
-        if left(&prims[begin]) {
-            begin += 1;
-        } else {
-            end -= 1;
-            prims.swap(begin, end);
-        }
+/// Moves what is left of the plane to the front. Lomuto's scheme without a branch: which side a triangle
+/// is on cannot be predicted.
+fn partition(prims: &mut [PrimRef], grid: &Grid, plane: &Plane) -> Parts {
+    let mut middle = 0;
+    let mut centroids = [Box4::EMPTY; 2];
+    for i in 0..prims.len() {
+        let prim = prims[i];
+        let centroid = prim.centroid();
+        let is_right = grid.bin(centroid)[plane.axis] >= plane.first_right;
+        let side = &mut centroids[usize::from(is_right)];
+        *side = side.with_point(centroid);
+        prims[i] = prims[middle];
+        prims[middle] = prim;
+        middle += usize::from(!is_right);
     }
-    begin
+    Parts {
+        middle,
+        bounds: plane.sides,
+        centroids,
+    }
 }
 
 /// Parts the triangles in the middle of their order along an axis; equal centres go by index.
 ///
 /// The first part is a whole number of blocks.
-fn halve(prims: &mut [PrimRef], axis: usize) -> usize {
+fn halve(prims: &mut [PrimRef], axis: usize) -> Parts {
     let middle = if prims.len() > LANES {
         (prims.len() / 2).next_multiple_of(LANES)
     } else {
@@ -192,128 +250,12 @@ fn halve(prims: &mut [PrimRef], axis: usize) -> usize {
     };
     prims.select_nth_unstable_by(middle, |a, b| {
         let along = f32::total_cmp(&a.centroid()[axis], &b.centroid()[axis]);
-        along.then(a.prim.cmp(&b.prim))
+        along.then(a.index().cmp(&b.index()))
     });
-    middle
-}
-
-/// Triangles that fell into one bin.
-#[derive(Debug, Clone, Copy)]
-struct Bin {
-    bounds: Aabb,
-    count: usize,
-}
-
-impl Bin {
-    const EMPTY: Self = Self {
-        bounds: Aabb::EMPTY,
-        count: 0,
-    };
-
-    fn merged(self, other: Self) -> Self {
-        Self {
-            bounds: self.bounds.union(other.bounds),
-            count: self.count + other.count,
-        }
-    }
-
-    fn cost(&self) -> f32 {
-        leaf_cost(self.count, self.bounds.half_area())
-    }
-}
-
-/// `[axis][bin]`.
-type Bins = [[Bin; BINS]; 3];
-
-/// Where to split: bins below `first_right` on `axis` go left.
-#[derive(Debug, Clone, Copy)]
-struct Plane {
-    axis: usize,
-    first_right: usize,
-    /// Sum over both sides of triangle cost times half area.
-    cost: f32,
-}
-
-/// Maps centroids to bins.
-struct Grid {
-    origin: Vec3,
-    bins_per_unit: Vec3,
-    extent: Vec3,
-}
-
-impl Grid {
-    fn new(centroids: Aabb) -> Self {
-        let extent = centroids.extent();
-        Self {
-            origin: centroids.min,
-            // Infinite on an axis without extent, where 0·∞ = NaN becomes bin 0.
-            bins_per_unit: Vec3::splat(BINS as f32) / extent,
-            extent,
-        }
-    }
-
-    fn longest_axis(&self) -> usize {
-        self.extent.max_position()
-    }
-
-    /// Bin of a triangle on each axis. Casts saturate, and NaN becomes 0.
-    #[inline(always)]
-    fn bin(&self, prim: &PrimRef) -> [usize; 3] {
-        let at = (prim.centroid() - self.origin) * self.bins_per_unit;
-        at.to_array().map(|x| (x as usize).min(BINS - 1))
-    }
-
-    fn fill(&self, prims: &[PrimRef]) -> Bins {
-        let of_chunk = |chunk: &[PrimRef]| {
-            let mut bins = [[Bin::EMPTY; BINS]; 3];
-            for prim in chunk {
-                for (bins, at) in bins.iter_mut().zip(self.bin(prim)) {
-                    bins[at].bounds = bins[at].bounds.union(prim.bounds);
-                    bins[at].count += 1;
-                }
-            }
-            bins
-        };
-        if prims.len() < 2 * PARALLEL_MIN {
-            return of_chunk(prims);
-        }
-        let merge = |mut a: Bins, b: Bins| {
-            for (a, b) in a.as_flattened_mut().iter_mut().zip(b.as_flattened()) {
-                *a = a.merged(*b);
-            }
-            a
-        };
-        let chunks = prims.par_chunks(PARALLEL_MIN).map(of_chunk);
-        chunks.reduce(|| [[Bin::EMPTY; BINS]; 3], merge)
-    }
-
-    /// The cheapest plane that leaves triangles on both sides and has a finite cost.
-    fn best_plane(&self, bins: &Bins) -> Option<Plane> {
-        let mut best: Option<Plane> = None;
-        for (axis, bins) in bins.iter().enumerate() {
-            let mut right_cost = [0.0; BINS];
-            let mut right = Bin::EMPTY;
-            for i in (1..BINS).rev() {
-                right = right.merged(bins[i]);
-                right_cost[i] = if right.count == 0 {
-                    f32::INFINITY
-                } else {
-                    right.cost()
-                };
-            }
-            let mut left = Bin::EMPTY;
-            for first_right in 1..BINS {
-                left = left.merged(bins[first_right - 1]);
-                let cost = left.cost() + right_cost[first_right];
-                if left.count > 0 && cost < best.map_or(f32::INFINITY, |b| b.cost) {
-                    best = Some(Plane {
-                        axis,
-                        first_right,
-                        cost,
-                    });
-                }
-            }
-        }
-        best
+    let (left, right) = prims.split_at(middle);
+    Parts {
+        middle,
+        bounds: [left, right].map(|side| box_of(side, |p| p.bounds())),
+        centroids: [left, right].map(|s| box_of(s, |p| Box4::EMPTY.with_point(p.centroid()))),
     }
 }

@@ -1,45 +1,40 @@
 //! From a binary tree to nodes with up to eight children.
 
-use super::build::{Content, PrimRef, Tree};
-use super::node::{Block, ChildRef, Node};
-use crate::geometry::TriangleMesh;
+use super::build::{Content, Tree};
+use super::node::{ChildRef, Node};
 use crate::geometry::triangle::LANES;
 
-/// A collapsed tree.
-pub(super) struct Wide {
-    pub(super) nodes: Vec<Node>,
-    pub(super) blocks: Vec<Block>,
-    pub(super) root: ChildRef,
+/// Nodes of a collapsed tree, children in depth-first order, and its root. Leaves are numbered from left to
+/// right. Without a tree there is no root.
+pub(super) fn collapse(tree: Option<&Tree>, leaves: usize) -> (Vec<Node>, ChildRef) {
+    let mut wide = Wide {
+        // Grids have 0.29 nodes a leaf, scans and buildings up to 0.4.
+        nodes: Vec::with_capacity(leaves / 2),
+        leaves: 0,
+    };
+    let root = tree.map_or(ChildRef::EMPTY, |tree| wide.add(tree));
+    wide.nodes.shrink_to_fit();
+    (wide.nodes, root)
 }
 
-/// Collapses a binary tree, children in depth-first order. Without a tree there is no root.
-pub(super) fn collapse(mesh: &TriangleMesh, prims: &[PrimRef], tree: Option<&Tree>) -> Wide {
-    let mut wide = Wide {
-        nodes: Vec::with_capacity(mesh.len() / 32),
-        blocks: Vec::with_capacity(mesh.len() / (LANES / 2) + 1),
-        root: ChildRef::EMPTY,
-    };
-    if let Some(tree) = tree {
-        wide.root = wide.add(mesh, prims, tree);
-    }
-    wide.nodes.shrink_to_fit();
-    wide.blocks.shrink_to_fit();
-    wide
+struct Wide {
+    nodes: Vec<Node>,
+    /// Leaves met so far.
+    leaves: usize,
 }
 
 impl Wide {
-    fn add(&mut self, mesh: &TriangleMesh, prims: &[PrimRef], tree: &Tree) -> ChildRef {
+    fn add(&mut self, tree: &Tree) -> ChildRef {
         match &tree.content {
-            Content::Leaf(range) => {
-                let prims = prims[range.clone()].iter().map(|p| p.prim);
-                self.blocks.push(Block::new(mesh, prims));
-                ChildRef::block(self.blocks.len() - 1)
+            Content::Leaf(_) => {
+                self.leaves += 1;
+                ChildRef::block(self.leaves - 1)
             }
             Content::Inner(halves) => {
                 let index = self.nodes.len();
                 self.nodes.push(Node::empty());
                 for (lane, child) in widen(halves).into_iter().flatten().enumerate() {
-                    let child_ref = self.add(mesh, prims, child);
+                    let child_ref = self.add(child);
                     self.nodes[index].set(lane, child.bounds, child_ref);
                 }
                 ChildRef::node(index)
@@ -48,14 +43,15 @@ impl Wide {
     }
 }
 
-/// Opens the inner child with the largest surface until there are eight children or only leaves.
+/// Opens the inner child with the largest surface until there are eight children or only leaves. They
+/// come from left to right.
 ///
 /// The largest box is the one most rays would enter next anyway.
 fn widen(halves: &[Tree; 2]) -> [Option<&Tree>; LANES] {
     let mut children = [None; LANES];
     children[0] = Some(&halves[0]);
     children[1] = Some(&halves[1]);
-    for free in 2..LANES {
+    for count in 2..LANES {
         let mut largest: Option<(usize, f32, &[Tree; 2])> = None;
         for (lane, child) in children.iter().flatten().enumerate() {
             let area = child.bounds.half_area();
@@ -69,7 +65,8 @@ fn widen(halves: &[Tree; 2]) -> [Option<&Tree>; LANES] {
             break;
         };
         children[lane] = Some(&halves[0]);
-        children[free] = Some(&halves[1]);
+        children[lane + 1..=count].rotate_right(1);
+        children[lane + 1] = Some(&halves[1]);
     }
     children
 }

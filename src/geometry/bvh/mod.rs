@@ -22,6 +22,9 @@ mod stack;
 mod stats;
 mod validate;
 
+use std::convert::Infallible;
+use std::sync::OnceLock;
+
 use super::{Aabb, TriangleMesh};
 use crate::math::simd::{SimdLevel, UnsupportedLevel, simd_level};
 use node::{Block, ChildRef, Node};
@@ -50,19 +53,40 @@ impl Bvh {
     /// Any mesh will do: empty, coincident triangles, triangles without area. Depth stays below 100.
     #[must_use]
     pub fn build(mesh: &TriangleMesh) -> Self {
-        let bounds = mesh.bounds();
-        let (prims, tree) = build::binary_tree(mesh);
-        let collapse::Wide {
-            nodes,
-            blocks,
-            root,
-        } = collapse::collapse(mesh, &prims, tree.as_ref());
+        let Ok(bvh) = Self::build_watched(mesh, &|_| Ok::<_, Infallible>(()));
+        bvh
+    }
+
+    /// As [`Self::build`], for meshes that take their time: every few thousand triangles, `watch` is told
+    /// the share that is in place (0…1), from any thread of the pool.
+    ///
+    /// # Errors
+    /// Stops soon after the first error that `watch` returns, and returns it.
+    pub fn build_watched<E: Send + Sync>(
+        mesh: &TriangleMesh,
+        watch: &(dyn Fn(f32) -> Result<(), E> + Sync),
+    ) -> Result<Self, E> {
+        let stopped = OnceLock::new();
+        let go_on = |share| match watch(share) {
+            Ok(()) => true,
+            Err(error) => {
+                // Only the first is returned.
+                let _ = stopped.set(error);
+                false
+            }
+        };
+        let (tree, blocks) = build::binary_tree(mesh, &go_on);
+        if let Some(error) = stopped.into_inner() {
+            return Err(error);
+        }
+        let (nodes, root) = collapse::collapse(tree.as_ref(), blocks.len());
+        let bounds = tree.map_or(Aabb::EMPTY, |tree| tree.bounds);
         let reach = if bounds.is_empty() {
             0.0
         } else {
             bounds.min.abs().max(bounds.max.abs()).max_element()
         };
-        Self {
+        Ok(Self {
             nodes,
             blocks,
             root,
@@ -70,7 +94,7 @@ impl Bvh {
             reach,
             triangles: mesh.len(),
             level: simd_level(),
-        }
+        })
     }
 
     /// Has bundles traced with the instructions of `level`. Changes no answer.

@@ -1,14 +1,18 @@
 //! Amplitudes where files give none: a share of the tile's width on the model, or what a normal map shows.
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
 use super::compare::compare;
-use crate::geometry::{Normalization, TriangleMesh};
+use crate::geometry::{Normalization, TriangleAttributes, TriangleMesh};
 use crate::shading::Material;
 use crate::texture::{MapImage, MapRole, MapSlot};
 
 /// Natural reliefs measure one to two hundredths of their tile; 0.05 already gives bricks near-vertical walls.
 const DEFAULT_SHARE: f64 = 0.02;
+
+/// Triangles that a thread takes at a time.
+const PIECE: usize = 8192;
 
 /// Fills in what a material's files leave open, once the mesh is there; says so in slots and in notes.
 ///
@@ -113,16 +117,27 @@ fn median_widths(
     normalization: &Normalization,
 ) -> Vec<Option<f64>> {
     let mut samples: Vec<Vec<[f64; 2]>> = vec![Vec::new(); count];
-    for (prim, attributes) in mesh.attributes.iter().enumerate() {
-        let Some(of_material) = samples.get_mut(usize::from(attributes.material)) else {
-            continue;
-        };
-        if attributes.has_uv && !mesh.uvs.is_empty() {
-            of_material.extend(width_and_area(mesh, prim));
+    let pieces: Vec<Vec<_>> = mesh
+        .attributes
+        .par_chunks(PIECE)
+        .enumerate()
+        .map(|(piece, attributes)| {
+            let with_uv = (piece * PIECE..)
+                .zip(attributes)
+                .filter(|(_, a)| a.has_uv && !mesh.uvs.is_empty());
+            let sample = |(prim, a): (usize, &TriangleAttributes)| {
+                width_and_area(mesh, prim).map(|sample| (usize::from(a.material), sample))
+            };
+            with_uv.filter_map(sample).collect()
+        })
+        .collect();
+    for (material, sample) in pieces.into_iter().flatten() {
+        if let Some(of_material) = samples.get_mut(material) {
+            of_material.push(sample);
         }
     }
     samples
-        .into_iter()
+        .into_par_iter()
         .map(|s| weighted_median(s).map(|w| w / normalization.scale))
         .collect()
 }
@@ -147,12 +162,49 @@ fn width_and_area(mesh: &TriangleMesh, prim: usize) -> Option<[f64; 2]> {
 }
 
 /// The value at which half of the weight is reached; `samples` are values and weights.
+///
+/// Hoare's selection with weights: large models have a sample for every triangle, and sorting them all
+/// would take longer than finding them.
 fn weighted_median(mut samples: Vec<[f64; 2]>) -> Option<f64> {
-    samples.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let half = samples.iter().map(|s| s[1]).sum::<f64>() * 0.5;
-    let mut weight = 0.0;
-    samples.iter().find_map(|s| {
-        weight += s[1];
-        (weight >= half).then_some(s[0])
-    })
+    let weight = |samples: &[[f64; 2]]| samples.iter().map(|s| s[1]).sum::<f64>();
+    let half = weight(&samples) * 0.5;
+    let (mut rest, mut below) = (&mut samples[..], 0.0);
+    while rest.len() > 1 {
+        let middle = rest.len() / 2;
+        rest.select_nth_unstable_by(middle, |a, b| {
+            a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
+        });
+        let (left, right) = rest.split_at_mut(middle);
+        let with_left = below + weight(left);
+        rest = if with_left >= half {
+            left
+        } else {
+            below = with_left;
+            right
+        };
+    }
+    rest.first().map(|s| s[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_of_the_weight_is_at_the_median_or_below() {
+        assert_eq!(weighted_median(Vec::new()), None);
+        for count in 1..60_u32 {
+            let sample = |i| [f64::from(i * 37 % 61 / 2), f64::from(1 + i * 11 % 7)];
+            let samples: Vec<_> = (0..count).map(sample).collect();
+            let mut sorted = samples.clone();
+            sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            let half = sorted.iter().map(|s| s[1]).sum::<f64>() * 0.5;
+            let mut weight = 0.0;
+            let expected = sorted.iter().find(|s| {
+                weight += s[1];
+                weight >= half
+            });
+            assert_eq!(weighted_median(samples), expected.map(|s| s[0]), "{count}");
+        }
+    }
 }

@@ -141,8 +141,7 @@ impl Loader<'_> {
         let mut placed = Vec::with_capacity(maps.len());
         for statement in maps {
             // Looking and decoding take the time here; where the load stands is the caller's to say.
-            let monitor = &self.options.monitor;
-            monitor.reached(monitor.fraction())?;
+            self.options.monitor.check()?;
             if let Some(image) = self.picture(statement, &definition.library) {
                 placed.push(PlacedMap { statement, image });
             }

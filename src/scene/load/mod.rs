@@ -45,5 +45,5 @@ mod staging;
 pub use amplitude::fill_default_amplitudes;
 pub use materials::{LibraryRef, MaterialSet, load_materials};
 pub use model::load_model;
-pub use options::{LoadMonitor, LoadOptions};
+pub use options::{LoadMonitor, LoadOptions, Stage};
 pub use picture::{DecodedPicture, PictureError, PictureLimits, PictureStore, decode_picture};

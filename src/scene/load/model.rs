@@ -1,23 +1,25 @@
 //! From an OBJ file to a scene with settings to start from.
 
+use std::fs::File;
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 use std::sync::Arc;
 
 use super::mesh::{Assembly, assemble};
 use super::obj::{Kind, Notes, Obj};
 use super::staging::staged;
-use super::{LibraryRef, LoadOptions, MaterialSet, fill_default_amplitudes, load_materials};
+use super::{
+    LibraryRef, LoadMonitor, LoadOptions, MaterialSet, Stage, fill_default_amplitudes,
+    load_materials,
+};
 use crate::geometry::bvh::Bvh;
 use crate::geometry::{Normalization, TriangleMesh};
 use crate::scene::{
     DisplaySettings, LoadError, LoadWarning, LoadedScene, ModelFacts, Scene, SceneSource,
 };
 
-/// Shares of the work done after reading, parsing, assembling, and reading materials.
-const READ: f32 = 0.05;
-const PARSED: f32 = 0.45;
-const ASSEMBLED: f32 = 0.65;
-const MATERIALS: f32 = 0.8;
+/// Bytes read between two looks at the monitor.
+const READ_BYTES: u64 = 4 << 20;
 
 /// Loads an OBJ model with its material libraries and maps.
 ///
@@ -30,13 +32,9 @@ const MATERIALS: f32 = 0.8;
 /// [`LoadError::Io`] if the file cannot be read, [`LoadError::Invalid`] if it has no usable face, more
 /// materials than 65,535 or more corners than 32 bits count, [`LoadError::Cancelled`] on request.
 pub fn load_model(path: &Path, options: &LoadOptions) -> Result<LoadedScene, LoadError> {
-    options.monitor.reached(0.0)?;
-    let text = std::fs::read(path).map_err(|source| LoadError::Io {
-        path: path.to_owned(),
-        source,
-    })?;
-    options.monitor.reached(READ)?;
-    let mut obj = Obj::parse(&text, path, (&options.monitor, [READ, PARSED]))?;
+    let monitor = &*options.monitor;
+    let text = read(path, monitor)?;
+    let mut obj = Obj::parse(&text, path, monitor)?;
     drop(text);
     let header = Header::take(&mut obj);
     let Assembly {
@@ -44,29 +42,30 @@ pub fn load_model(path: &Path, options: &LoadOptions) -> Result<LoadedScene, Loa
         normalization,
         facts,
         crossed,
-    } = assemble(obj, options, [PARSED, ASSEMBLED])?;
-    let mut warnings = geometry_notes(header.notes, &facts, &crossed);
+    } = assemble(obj, options)?;
+    let mut warnings = geometry_notes(header.notes, path, &facts, &crossed);
     let Some(bounds) = facts.bounds else {
         return Err(no_surface(path, &facts, &warnings));
     };
+    monitor.reached(Stage::Materials, 0.0)?;
     let mut set = load_materials(&header.libraries, &header.materials, options)?;
     settle_amplitudes(&mut set, path, (&mesh, &normalization));
     warnings.append(&mut set.warnings);
-    options.monitor.reached(MATERIALS)?;
     let settings = staged(&mesh, bounds, set.materials);
+    let bvh = Bvh::build_watched(&mesh, &|share| monitor.reached(Stage::Tree, share))?;
     let scene = Scene {
         name: path.file_name().map_or_else(
             || path.display().to_string(),
             |name| name.to_string_lossy().into_owned(),
         ),
         source: SceneSource::Model(path.to_owned()),
-        bvh: Bvh::build(&mesh),
+        bvh,
         mesh,
         normalization,
         images: set.images,
         facts,
     };
-    options.monitor.reached(1.0)?;
+    monitor.reached(Stage::Tree, 1.0)?;
     Ok(LoadedScene {
         scene: Arc::new(scene),
         settings,
@@ -74,6 +73,27 @@ pub fn load_model(path: &Path, options: &LoadOptions) -> Result<LoadedScene, Loa
         size: None,
         warnings,
     })
+}
+
+/// All bytes of a file.
+fn read(path: &Path, monitor: &LoadMonitor) -> Result<Vec<u8>, LoadError> {
+    let in_file = |source| LoadError::Io {
+        path: path.to_owned(),
+        source,
+    };
+    let mut file = File::open(path).map_err(in_file)?;
+    // What is no plain file has no size to speak of, and is read all the same.
+    let size = file.metadata().map_err(in_file)?.len();
+    let mut text = Vec::new();
+    text.try_reserve_exact(size as usize)
+        .map_err(|_| in_file(ErrorKind::OutOfMemory.into()))?;
+    loop {
+        monitor.reached(Stage::Reading, text.len() as f32 / size as f32)?;
+        let part = file.by_ref().take(READ_BYTES).read_to_end(&mut text);
+        if part.map_err(in_file)? == 0 {
+            return Ok(text);
+        }
+    }
 }
 
 /// What outlives the polygons of a file.
@@ -85,11 +105,10 @@ struct Header {
 
 impl Header {
     fn take(obj: &mut Obj) -> Self {
-        let empty = Notes::new(&obj.path);
         Self {
             materials: std::mem::take(&mut obj.materials),
             libraries: std::mem::take(&mut obj.libraries),
-            notes: std::mem::replace(&mut obj.notes, empty),
+            notes: std::mem::take(&mut obj.notes),
         }
     }
 }
@@ -115,7 +134,12 @@ fn settle_amplitudes(
     }
 }
 
-fn geometry_notes(mut notes: Notes, facts: &ModelFacts, crossed: &[u32]) -> Vec<LoadWarning> {
+fn geometry_notes(
+    mut notes: Notes,
+    path: &Path,
+    facts: &ModelFacts,
+    crossed: &[u32],
+) -> Vec<LoadWarning> {
     for &line in crossed {
         notes.add(Kind::Crossed, line as usize, || {
             "face is folded or crosses itself; its triangles overlap".into()
@@ -127,7 +151,7 @@ fn geometry_notes(mut notes: Notes, facts: &ModelFacts, crossed: &[u32]) -> Vec<
             facts.degenerate, facts.triangles
         ));
     }
-    notes.finish()
+    notes.finish(path)
 }
 
 fn no_surface(path: &Path, facts: &ModelFacts, warnings: &[LoadWarning]) -> LoadError {

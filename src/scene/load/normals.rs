@@ -1,9 +1,15 @@
 //! Vertex normals for faces that bring none.
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
+use super::LoadMonitor;
 use super::obj::{NONE, Obj, Smoothing};
 use super::polygon::area_vector;
+use crate::scene::LoadError;
+
+/// Positions or faces that a thread takes at a time.
+const PIECE: usize = 8192;
 
 /// Cosine of the angle between faces from which on an edge stays sharp where the file says nothing about
 /// smoothing: 60°. Cubes and prisms with up to five sides keep their edges, scans look smooth.
@@ -25,14 +31,41 @@ struct Incident {
 /// - Where the file has no `s`: the same mean over faces that hang together across edges below 60°.
 ///
 /// Positions count as shared where faces use the same `v`. Corners whose mean vanishes get none.
-pub(super) fn complete_normals(obj: &mut Obj) {
+pub(super) fn complete_normals(obj: &mut Obj, monitor: &LoadMonitor) -> Result<(), LoadError> {
     replace_zero_normals(obj);
-    let Some(mut work) = Work::new(obj) else {
-        return;
+    let Some(listed) = Listed::new(obj) else {
+        return Ok(());
     };
-    for v in 0..obj.positions.len() {
-        work.around_position(obj, v);
+    let starts: Vec<_> = (0..obj.positions.len()).step_by(PIECE).collect();
+    let pieces = starts
+        .into_par_iter()
+        .map_init(Scratch::default, |scratch, start| {
+            monitor.check()?;
+            let mut piece = Piece::default();
+            for v in start..obj.positions.len().min(start + PIECE) {
+                scratch.around_position(obj, &listed, v, &mut piece);
+            }
+            Ok(piece)
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    drop(listed);
+    for piece in pieces {
+        let first = obj.normals.len() as u32;
+        obj.normals.extend(piece.normals);
+        for (corner, normal) in piece.corners {
+            let own = if normal == NONE { NONE } else { first + normal };
+            obj.corners[corner as usize].vn = own;
+        }
     }
+    Ok(())
+}
+
+/// Normals made at some positions, and the corners that get them.
+#[derive(Default)]
+struct Piece {
+    normals: Vec<Vec3>,
+    /// Corner, and index into `normals` or [`NONE`].
+    corners: Vec<(u32, u32)>,
 }
 
 fn face_normal(obj: &Obj, face: usize, scratch: &mut Vec<DVec3>) -> Vec3 {
@@ -67,26 +100,18 @@ fn replace_zero_normals(obj: &mut Obj) {
     }
 }
 
-/// What generating normals needs, and memory that is used again at every position.
-struct Work {
+/// The corners that want normals, by position.
+struct Listed {
     /// Of every face; zero without area.
     face_normals: Vec<Vec3>,
     smoothing: Vec<Smoothing>,
     /// Where each position's incidents start; one more than positions.
     starts: Vec<u32>,
     incidents: Vec<Incident>,
-    around: Vec<Incident>,
-    /// Union-find over `around`.
-    parents: Vec<u32>,
-    /// (neighbouring position, index into `around`).
-    spokes: Vec<(u32, u32)>,
-    sums: Vec<DVec3>,
-    /// Index of the normal of each root.
-    made: Vec<u32>,
 }
 
-impl Work {
-    /// Lists the corners that want normals; `None` if there are none.
+impl Listed {
+    /// `None` if there are none.
     fn new(obj: &Obj) -> Option<Self> {
         let wants = |face: usize| {
             obj.corners[obj.corners_of(face)]
@@ -122,57 +147,75 @@ impl Work {
                 };
             }
         }
-        let mut scratch = Vec::new();
         let mut smoothing = vec![Smoothing::Off; obj.faces.len()];
         for (span, faces) in obj.spans() {
             smoothing[faces].fill(span.smoothing);
         }
         Some(Self {
             face_normals: (0..obj.faces.len())
-                .map(|face| face_normal(obj, face, &mut scratch))
+                .into_par_iter()
+                .with_min_len(PIECE)
+                .map_init(Vec::new, |scratch, face| face_normal(obj, face, scratch))
                 .collect(),
             smoothing,
             starts,
             incidents,
-            around: Vec::new(),
-            parents: Vec::new(),
-            spokes: Vec::new(),
-            sums: Vec::new(),
-            made: Vec::new(),
         })
     }
 
-    fn around_position(&mut self, obj: &mut Obj, v: usize) {
-        let range = self.starts[v] as usize..self.starts[v + 1] as usize;
+    fn smoothing(&self, incident: Incident) -> Smoothing {
+        self.smoothing[incident.face as usize]
+    }
+
+    fn face_normal(&self, incident: Incident) -> Vec3 {
+        self.face_normals[incident.face as usize]
+    }
+}
+
+/// Memory that is used again at every position.
+#[derive(Default)]
+struct Scratch {
+    around: Vec<Incident>,
+    /// Union-find over `around`.
+    parents: Vec<u32>,
+    /// (neighbouring position, index into `around`).
+    spokes: Vec<(u32, u32)>,
+    sums: Vec<DVec3>,
+    /// Index of the normal of each root.
+    made: Vec<u32>,
+}
+
+impl Scratch {
+    fn around_position(&mut self, obj: &Obj, listed: &Listed, v: usize, piece: &mut Piece) {
+        let range = listed.starts[v] as usize..listed.starts[v + 1] as usize;
         if range.is_empty() {
             return;
         }
         self.around.clear();
-        self.around.extend_from_slice(&self.incidents[range]);
-        let smoothing = &self.smoothing;
+        self.around.extend_from_slice(&listed.incidents[range]);
         // The stable order by face makes sums independent of how corners were listed.
         self.around
-            .sort_unstable_by_key(|i| (smoothing[i.face as usize], i.face, i.corner));
+            .sort_unstable_by_key(|i| (listed.smoothing(*i), i.face, i.corner));
         self.parents.clear();
         self.parents.extend(0..self.around.len() as u32);
-        self.join_groups();
-        self.join_across_gentle_edges(obj);
-        self.store_means(obj, v);
+        self.join_groups(listed);
+        self.join_across_gentle_edges(obj, listed);
+        self.store_means(obj, listed, v, piece);
     }
 
-    fn join_groups(&mut self) {
+    fn join_groups(&mut self, listed: &Listed) {
         for i in 1..self.around.len() {
-            let [before, this] = [i - 1, i].map(|i| self.smoothing[self.around[i].face as usize]);
+            let [before, this] = [i - 1, i].map(|i| listed.smoothing(self.around[i]));
             if before == this && this != Smoothing::Unsaid {
                 self.parents[i] = self.root(i as u32 - 1);
             }
         }
     }
 
-    fn join_across_gentle_edges(&mut self, obj: &Obj) {
+    fn join_across_gentle_edges(&mut self, obj: &Obj, listed: &Listed) {
         self.spokes.clear();
         for (i, incident) in self.around.iter().enumerate() {
-            if self.smoothing[incident.face as usize] == Smoothing::Unsaid {
+            if listed.smoothing(*incident) == Smoothing::Unsaid {
                 let [before, after] = neighbours(obj, *incident);
                 self.spokes.push((obj.corners[before].v, i as u32));
                 self.spokes.push((obj.corners[after].v, i as u32));
@@ -184,7 +227,7 @@ impl Work {
             if p != q {
                 continue;
             }
-            let [m, n] = [a, b].map(|i| self.face_normals[self.around[i as usize].face as usize]);
+            let [m, n] = [a, b].map(|i| listed.face_normal(self.around[i as usize]));
             if m.dot(n) > SHARP_COS {
                 let (a, b) = (self.root(a), self.root(b));
                 self.parents[a.max(b) as usize] = a.min(b);
@@ -201,7 +244,7 @@ impl Work {
         i
     }
 
-    fn store_means(&mut self, obj: &mut Obj, v: usize) {
+    fn store_means(&mut self, obj: &Obj, listed: &Listed, v: usize, piece: &mut Piece) {
         self.sums.clear();
         self.sums.resize(self.around.len(), DVec3::ZERO);
         for i in 0..self.around.len() {
@@ -209,7 +252,7 @@ impl Work {
             let [before, after] = neighbours(obj, incident)
                 .map(|c| obj.positions[obj.corners[c].v as usize] - obj.positions[v]);
             let angle = before.angle_between(after);
-            let normal = self.face_normals[incident.face as usize].as_dvec3();
+            let normal = listed.face_normal(incident).as_dvec3();
             let root = self.root(i as u32) as usize;
             if angle.is_finite() {
                 self.sums[root] += normal * angle;
@@ -221,10 +264,10 @@ impl Work {
             let root = self.root(i as u32) as usize;
             let mean = self.sums[root].normalize_or_zero().as_vec3();
             if self.made[root] == NONE && mean != Vec3::ZERO {
-                self.made[root] = obj.normals.len() as u32;
-                obj.normals.push(mean);
+                self.made[root] = piece.normals.len() as u32;
+                piece.normals.push(mean);
             }
-            obj.corners[self.around[i].corner as usize].vn = self.made[root];
+            piece.corners.push((self.around[i].corner, self.made[root]));
         }
     }
 }

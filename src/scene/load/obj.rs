@@ -1,26 +1,33 @@
 //! OBJ text, read line by line: one bad line costs one note, never the file.
+//!
+//! Large files are cut into chunks of whole lines. A quick count of each tells at which line, vertex and
+//! so on it begins; then all are parsed at the same time, and joined in their order. The result is that of
+//! reading from top to bottom.
 
+mod chunks;
+mod keywords;
 mod lines;
 mod notes;
 mod number;
 mod parser;
+mod part;
 mod resolve;
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::{DVec3, Vec2, Vec3};
+use rayon::prelude::*;
 
-use super::{LibraryRef, LoadMonitor};
+use super::{LibraryRef, LoadMonitor, Stage};
 use crate::scene::LoadError;
-use lines::Lines;
+use chunks::chunks;
 pub(super) use notes::{Kind, Notes};
 use parser::Parser;
+use part::Joiner;
 
 /// A corner without this attribute.
 pub(super) const NONE: u32 = u32::MAX;
-
-/// Lines between two looks at the monitor.
-const LINES_PER_REPORT: usize = 16_384;
 
 /// One corner of a face: indices from 0 into positions, texture coordinates and normals, or [`NONE`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,27 +99,22 @@ pub(super) struct Obj {
 }
 
 impl Obj {
-    /// Reads text that came from `path`. The monitor is told fractions from `start` to `end`.
-    pub fn parse(
-        text: &[u8],
-        path: &Path,
-        (monitor, [start, end]): (&LoadMonitor, [f32; 2]),
-    ) -> Result<Self, LoadError> {
-        let mut parser = Parser::new(path, text.len());
-        let mut lines = Lines::new(text);
-        let mut until_report = LINES_PER_REPORT;
-        while let Some((number, line)) = lines.next() {
-            parser.statement(number, line)?;
-            until_report -= 1;
-            if until_report == 0 {
-                until_report = LINES_PER_REPORT;
-                let done = lines.position() as f32 / text.len() as f32;
-                monitor.reached(start + (end - start) * done)?;
-            }
-        }
-        monitor.reached(end)?;
-        parser.obj.resolve();
-        Ok(parser.obj)
+    /// Reads text that came from `path`, on the current rayon pool.
+    pub fn parse(text: &[u8], path: &Path, monitor: &LoadMonitor) -> Result<Self, LoadError> {
+        let parsed = AtomicUsize::new(0);
+        let chunks = chunks(text);
+        let parts = chunks
+            .par_iter()
+            .with_max_len(1)
+            .map(|chunk| {
+                let share = parsed.fetch_add(1, Ordering::Relaxed) as f32 / chunks.len() as f32;
+                monitor.reached(Stage::Parsing, share)?;
+                Parser::read(path, chunk)
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut obj = Joiner::join(path, parts)?;
+        obj.resolve();
+        Ok(obj)
     }
 
     /// Material and smoothing with the faces they hold for.

@@ -44,12 +44,13 @@ pub(super) fn staged(
 fn camera(mesh: &TriangleMesh, [min, max]: [DVec3; 2]) -> Camera {
     let extent = max - min;
     let flat = extent.min_element() < FLAT * extent.max_element();
-    let side = facing(mesh, extent.min_position());
-    let from = match (flat, extent.min_position()) {
+    let axis = extent.min_position();
+    let side = || facing(mesh, axis);
+    let from = match (flat, axis) {
         (false, _) => DVec3::new(0.6, 0.45, 1.0),
-        (true, 0) => DVec3::new(side, 0.25, 0.35),
-        (true, 1) => DVec3::new(0.35, 0.9 * side, 0.9),
-        (true, _) => DVec3::new(0.35, 0.25, side),
+        (true, 0) => DVec3::new(side(), 0.25, 0.35),
+        (true, 1) => DVec3::new(0.35, 0.9 * side(), 0.9),
+        (true, _) => DVec3::new(0.35, 0.25, side()),
     };
     // Framed at unit size: squares of extreme coordinates would overflow or vanish.
     let unit = Normalization::fit(min, max);

@@ -154,3 +154,28 @@ fn a_first_input_that_fails_leaves_a_working_window() {
         SceneSource::BuiltIn(SCENES[0].name.to_owned())
     );
 }
+
+/// A pipe that nobody writes to is a file that loads forever.
+#[cfg(unix)]
+#[test]
+fn a_load_is_cancelled_and_the_scene_stays() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pipe = folder.path().join("endless.obj");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.expect("mkfifo runs").success());
+    let mut driver = Driver::reference();
+    let before = driver.doc().scene.name.clone();
+    type_path(&mut driver, "Path", &pipe);
+    driver.button("Open path");
+    driver.wait_until(|app| app.is_loading());
+    assert!(driver.has("Loading endless.obj"));
+    // The window is alive meanwhile.
+    driver.number("Amplitude", 0.0625);
+    driver.button("Cancel loading");
+    driver.wait_until(|app| !app.is_loading());
+    assert!(driver.app().messages().any(|m| m.contains("cancelled")));
+    assert_eq!(driver.doc().scene.name, before);
+    assert!(!driver.has("Loading endless.obj"));
+    // Lets the thread that still waits for the pipe go.
+    drop(std::fs::OpenOptions::new().write(true).open(&pipe));
+}

@@ -26,9 +26,19 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Bytes behind the lines handed out so far.
-    pub const fn position(&self) -> usize {
-        self.at
+    /// Goes on inside a file, where a line begins and this many are before it.
+    pub const fn inside(text: &'a [u8], lines_before: usize) -> Self {
+        Self {
+            at: 0,
+            text,
+            line: lines_before,
+            joined: Vec::new(),
+        }
+    }
+
+    /// Number of the last line handed out, or of the last of those that it joined.
+    pub const fn number(&self) -> usize {
+        self.line
     }
 
     /// The next logical line without its end, and the number (from 1) of the line it starts on.
@@ -57,19 +67,53 @@ impl<'a> Lines<'a> {
 
     fn physical(&mut self) -> Option<&'a [u8]> {
         let rest = self.text.get(self.at..).filter(|r| !r.is_empty())?;
-        let length = rest
-            .iter()
-            .position(|&b| b == b'\n' || b == b'\r')
-            .unwrap_or(rest.len());
-        let end = if rest[length..].starts_with(b"\r\n") {
-            2
-        } else {
-            1
-        };
-        self.at += length + end.min(rest.len() - length);
+        let length = line_length(rest);
+        self.at += length + line_end(&rest[length..]);
         self.line += 1;
         Some(&rest[..length])
     }
+}
+
+/// Bytes before the first LF or CR. Eight at a time: every byte of a large file passes here twice.
+fn line_length(text: &[u8]) -> usize {
+    // The lowest set bit is in the first byte of `x` that is zero (Mycroft's test); higher ones may err.
+    const ONES: u64 = u64::from_ne_bytes([1; 8]);
+    let zeros = |x: u64| x.wrapping_sub(ONES) & !x & (ONES << 7);
+    let (words, rest) = text.as_chunks::<8>();
+    for (i, word) in words.iter().enumerate() {
+        let word = u64::from_le_bytes(*word);
+        let ends =
+            zeros(word ^ (ONES * u64::from(b'\n'))) | zeros(word ^ (ONES * u64::from(b'\r')));
+        if ends != 0 {
+            return 8 * i + ends.trailing_zeros() as usize / 8;
+        }
+    }
+    let is_end = |b: &u8| matches!(b, b'\n' | b'\r');
+    8 * words.len() + rest.iter().position(is_end).unwrap_or(rest.len())
+}
+
+/// Bytes of the line end with which `text` begins: 0 at the end of the file.
+fn line_end(text: &[u8]) -> usize {
+    match text {
+        [] => 0,
+        [b'\r', b'\n', ..] => 2,
+        [..] => 1,
+    }
+}
+
+/// Where the first line begins that starts at `from` or later and surely continues none before it.
+pub(in crate::scene::load) fn next_start(text: &[u8], from: usize) -> usize {
+    let mut at = from;
+    while at < text.len() {
+        let end = at + line_length(&text[at..]);
+        at = end + line_end(&text[end..]);
+        // CR before `from` may be half of a CRLF.
+        let line = &text[..end];
+        if !line.strip_suffix(b"\r").unwrap_or(line).ends_with(b"\\") {
+            break;
+        }
+    }
+    at
 }
 
 /// The line without the `\` that joins it to the next one, if it has one.
@@ -178,6 +222,29 @@ mod tests {
         assert_eq!(got, vec![(1, "f 1  2  3".into()), (4, "v ".into())]);
         // A path in a comment does not swallow the next line.
         assert_eq!(lines(b"# C:\\models\\\nv 1").len(), 2);
+    }
+
+    #[test]
+    fn ends_are_found_wherever_they_are_in_a_word() {
+        for length in 0..40 {
+            // 0x0b and 0x8a differ from the line ends by one bit.
+            let mut text: Vec<u8> = [0x0b, 0x8a, b'x']
+                .into_iter()
+                .cycle()
+                .take(length)
+                .collect();
+            assert_eq!(line_length(&text), length);
+            text.extend_from_slice(b"\nxxxx\r\nxxxx\n");
+            assert_eq!(line_length(&text), length);
+        }
+    }
+
+    #[test]
+    fn a_start_is_never_inside_a_continued_line() {
+        let text = b"a\\\r\nb\\\nc\nd\r\n";
+        let starts: Vec<_> = (0..text.len()).map(|from| next_start(text, from)).collect();
+        assert_eq!(&starts[..9], [9; 9]);
+        assert_eq!(&starts[9..], [12; 3]);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Collects what was doubtful in a file without drowning the reader.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::scene::LoadWarning;
 
@@ -68,34 +68,32 @@ impl Kind {
 }
 
 /// Notes about one file, in the order of its lines.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(in crate::scene::load) struct Notes {
-    file: PathBuf,
-    list: Vec<LoadWarning>,
+    list: Vec<Note>,
+    about_file: Vec<String>,
     listed: [usize; Kind::ALL.len()],
+    /// How many, and the first one's line.
     counted: [(usize, usize); Kind::ALL.len()],
 }
 
-impl Notes {
-    /// No notes about a file yet.
-    pub fn new(file: &Path) -> Self {
-        Self {
-            file: file.to_owned(),
-            list: Vec::new(),
-            listed: [0; _],
-            counted: [(0, 0); _],
-        }
-    }
+#[derive(Debug)]
+struct Note {
+    kind: Kind,
+    line: usize,
+    message: String,
+}
 
+impl Notes {
     /// Adds a note of its own, as long as there are not too many of its kind. The message is made only
     /// when it is shown.
     pub fn add(&mut self, kind: Kind, line: usize, message: impl FnOnce() -> String) {
         let count = &mut self.listed[kind as usize];
         *count += 1;
         if *count <= LISTED {
-            self.list.push(LoadWarning {
-                file: self.file.clone(),
-                line: Some(line),
+            self.list.push(Note {
+                kind,
+                line,
                 message: message(),
             });
         }
@@ -112,22 +110,40 @@ impl Notes {
 
     /// Adds a note about the whole file.
     pub fn about_file(&mut self, message: String) {
-        self.list.push(LoadWarning {
-            file: self.file.clone(),
-            line: None,
-            message,
-        });
+        self.about_file.push(message);
+    }
+
+    /// Adds the notes about what follows in the file.
+    pub fn append(&mut self, later: Self) {
+        let mut room = self.listed.map(|listed| LISTED.saturating_sub(listed));
+        self.list.extend(later.list.into_iter().filter(|note| {
+            let room = &mut room[note.kind as usize];
+            let fits = *room > 0;
+            *room = room.saturating_sub(1);
+            fits
+        }));
+        self.about_file.extend(later.about_file);
+        for (listed, more) in self.listed.iter_mut().zip(later.listed) {
+            *listed += more;
+        }
+        for ((count, first), (more, later_first)) in self.counted.iter_mut().zip(later.counted) {
+            if *count == 0 {
+                *first = later_first;
+            }
+            *count += more;
+        }
     }
 
     /// All notes by line, those about the whole file last.
-    pub fn finish(mut self) -> Vec<LoadWarning> {
+    pub fn finish(mut self, file: &Path) -> Vec<LoadWarning> {
         for kind in Kind::ALL {
-            let (count, first) = self.counted[kind as usize];
+            let (count, line) = self.counted[kind as usize];
             if count > 0 {
-                self.list.push(LoadWarning {
-                    file: self.file.clone(),
-                    line: Some(first),
-                    message: format!("{}; {count} in this file", kind.summary()),
+                let message = format!("{}; {count} in this file", kind.summary());
+                self.list.push(Note {
+                    kind,
+                    line,
+                    message,
                 });
             }
         }
@@ -137,8 +153,45 @@ impl Notes {
                 self.about_file(format!("and {more} more: {}", kind.summary()));
             }
         }
-        self.list
-            .sort_by_key(|note| note.line.unwrap_or(usize::MAX));
-        self.list
+        self.list.sort_by_key(|note| note.line);
+        let warning = |line, message| LoadWarning {
+            file: file.to_owned(),
+            line,
+            message,
+        };
+        let of_lines = self
+            .list
+            .into_iter()
+            .map(|n| warning(Some(n.line), n.message));
+        let of_file = self.about_file.into_iter().map(|m| warning(None, m));
+        of_lines.chain(of_file).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_of_a_file_note_what_the_whole_would() {
+        let fill = |notes: &mut Notes, lines: std::ops::Range<usize>| {
+            for line in lines {
+                notes.add(Kind::Number, line, || format!("bad {line}"));
+                if line % 3 == 0 {
+                    notes.add(Kind::Unknown, line, || format!("unknown {line}"));
+                    notes.count(Kind::Point, line);
+                }
+            }
+        };
+        let mut whole = Notes::default();
+        fill(&mut whole, 1..100);
+        let mut joined = Notes::default();
+        for lines in [1..4, 4..19, 19..70, 70..100] {
+            let mut part = Notes::default();
+            fill(&mut part, lines);
+            joined.append(part);
+        }
+        let file = Path::new("a.obj");
+        assert_eq!(joined.finish(file), whole.finish(file));
     }
 }

@@ -5,15 +5,15 @@ use std::path::Path;
 
 use glam::{DVec3, Vec2, Vec3};
 
-use super::lines::{Words, name, shown, split_keyword};
-use super::notes::{Kind, Notes};
+use super::chunks::{Chunk, Count};
+use super::keywords::{is_display, is_freeform};
+use super::lines::{Words, is_blank, name, shown, split_keyword};
+use super::notes::Kind;
 use super::number::{float, integer};
-use super::{Corner, Face, NONE, Obj, Smoothing, Span};
+use super::part::{Part, PartSpan, UsedMaterial, too_many_vertices};
+use super::{Corner, Face, NONE, Smoothing};
 use crate::scene::LoadError;
 use crate::scene::load::LibraryRef;
-
-/// Material indices are `u16`.
-const MAX_MATERIALS: usize = u16::MAX as usize;
 
 /// The first word of a face with a bad index of each kind.
 #[derive(Default)]
@@ -23,45 +23,43 @@ struct BadWords<'a> {
     vn: Option<&'a [u8]>,
 }
 
-/// Reads statements into an [`Obj`]; a `usemtl` or `s` holds until the next.
-pub(super) struct Parser {
-    /// What was read so far, its positive indices unchecked.
-    pub obj: Obj,
-    /// Name and line of the last `usemtl`; with a comment, as some names hold a `#`.
-    current: (Vec<u8>, usize),
-    /// Its index, once a face uses it.
-    material: Option<u16>,
-    smoothing: Smoothing,
-    index_of: HashMap<Vec<u8>, u16>,
+/// Reads the statements of a chunk; a `usemtl` or `s` holds until the next.
+pub(super) struct Parser<'a> {
+    path: &'a Path,
+    /// What the file holds before the chunk.
+    before: Count,
+    part: Part,
+    /// Index of the material in force, once a face uses it.
+    material: Option<u32>,
+    index_of: HashMap<Option<Vec<u8>>, u32>,
 }
 
-impl Parser {
-    /// Nothing read yet of a file with this many bytes.
-    pub fn new(path: &Path, bytes: usize) -> Self {
-        // Exported text spends about 80 bytes for a vertex with everything that refers to it.
-        let vertices = bytes / 80;
-        Self {
-            obj: Obj {
-                path: path.to_owned(),
-                positions: Vec::with_capacity(vertices),
-                uvs: Vec::new(),
-                normals: Vec::new(),
-                corners: Vec::with_capacity(vertices * 4),
-                faces: Vec::with_capacity(vertices),
-                spans: Vec::new(),
-                materials: Vec::new(),
-                libraries: Vec::new(),
-                notes: Notes::new(path),
+impl<'a> Parser<'a> {
+    /// Reads a chunk of the file at `path`. Only limits that cannot be lifted are errors.
+    pub fn read(path: &'a Path, chunk: &Chunk<'_>) -> Result<Part, LoadError> {
+        let holds = &chunk.holds;
+        let mut parser = Self {
+            path,
+            before: chunk.before,
+            part: Part {
+                positions: Vec::with_capacity(holds.positions),
+                uvs: Vec::with_capacity(holds.uvs),
+                normals: Vec::with_capacity(holds.normals),
+                corners: Vec::with_capacity(holds.faces * 3),
+                faces: Vec::with_capacity(holds.faces),
+                ..Part::default()
             },
-            current: (Vec::new(), 0),
             material: None,
-            smoothing: Smoothing::Unsaid,
             index_of: HashMap::new(),
+        };
+        let mut lines = chunk.lines();
+        while let Some((number, line)) = lines.next() {
+            parser.statement(number, line)?;
         }
+        Ok(parser.part)
     }
 
-    /// Reads a logical line. Only limits that cannot be lifted are errors.
-    pub fn statement(&mut self, line: usize, text: &[u8]) -> Result<(), LoadError> {
+    fn statement(&mut self, line: usize, text: &[u8]) -> Result<(), LoadError> {
         let (keyword, rest) = split_keyword(text);
         match keyword {
             b"v" => self.vertex(line, rest),
@@ -70,21 +68,21 @@ impl Parser {
             b"f" | b"fo" => self.face(line, rest)?,
             b"s" => self.smoothing(line, rest),
             b"usemtl" => {
-                self.current = (rest.to_vec(), line);
+                self.part.usemtl = Some((rest.to_vec(), line));
                 self.material = None;
             }
-            b"mtllib" => self.obj.libraries.push(LibraryRef {
+            b"mtllib" => self.part.libraries.push(LibraryRef {
                 name: rest.to_vec(),
-                model: self.obj.path.clone(),
+                model: self.path.to_owned(),
                 line,
             }),
-            b"l" => self.obj.notes.count(Kind::Line, line),
-            b"p" => self.obj.notes.count(Kind::Point, line),
+            b"l" => self.part.notes.count(Kind::Line, line),
+            b"p" => self.part.notes.count(Kind::Point, line),
             b"" | b"g" | b"o" => {}
             _ if keyword[0] == b'#' => {}
-            _ if is_freeform(keyword) => self.obj.notes.count(Kind::Freeform, line),
+            _ if is_freeform(keyword) => self.part.notes.count(Kind::Freeform, line),
             _ if is_display(keyword) => {}
-            _ => self.obj.notes.add(Kind::Unknown, line, || {
+            _ => self.part.notes.add(Kind::Unknown, line, || {
                 format!("unknown statement '{}' skipped", shown(keyword))
             }),
         }
@@ -104,7 +102,7 @@ impl Parser {
     }
 
     fn bad_number(&mut self, line: usize, rest: &[u8], what: &str) {
-        self.obj.notes.add(Kind::Number, line, || {
+        self.part.notes.add(Kind::Number, line, || {
             format!("{what}, got '{}'", shown(name(rest)))
         });
     }
@@ -114,14 +112,14 @@ impl Parser {
         let position = if let [Some(x), Some(y), Some(z)] = Self::numbers(&mut words) {
             // One more word is a weight, three or four are a colour.
             if !words.0.is_empty() && words.nth(2).is_some() {
-                self.obj.notes.count(Kind::VertexColor, line);
+                self.part.notes.count(Kind::VertexColor, line);
             }
             DVec3::new(x, y, z)
         } else {
             self.bad_number(line, rest, "a vertex needs three finite numbers");
             DVec3::NAN
         };
-        self.obj.positions.push(position);
+        self.part.positions.push(position);
     }
 
     fn texture_coordinate(&mut self, line: usize, rest: &[u8]) {
@@ -139,26 +137,26 @@ impl Parser {
                 "a texture coordinate needs one or two finite numbers",
             );
         }
-        self.obj.uvs.push(uv.unwrap_or(Vec2::NAN));
+        self.part.uvs.push(uv.unwrap_or(Vec2::NAN));
     }
 
     fn normal(&mut self, line: usize, rest: &[u8]) {
         let normal = if let [Some(x), Some(y), Some(z)] = Self::numbers(&mut Words(rest)) {
             let unit = DVec3::new(x, y, z).normalize_or_zero().as_vec3();
             if unit == Vec3::ZERO {
-                self.obj.notes.count(Kind::ZeroNormal, line);
+                self.part.notes.count(Kind::ZeroNormal, line);
             }
             unit
         } else {
             self.bad_number(line, rest, "a normal needs three finite numbers");
             Vec3::ZERO
         };
-        self.obj.normals.push(normal);
+        self.part.normals.push(normal);
     }
 
     fn smoothing(&mut self, line: usize, rest: &[u8]) {
         let word = name(rest);
-        self.smoothing = match (word, integer(word).map(u32::try_from)) {
+        let smoothing = match (word, integer(word).map(u32::try_from)) {
             (b"off" | b"OFF" | b"Off", _) | (_, Some(Ok(0))) => Smoothing::Off,
             (b"on" | b"ON" | b"On", _) => Smoothing::Group(1),
             (_, Some(Ok(group))) => Smoothing::Group(group),
@@ -167,18 +165,27 @@ impl Parser {
                 return;
             }
         };
+        self.part.smoothing = Some(smoothing);
     }
 
     fn face(&mut self, line: usize, rest: &[u8]) -> Result<(), LoadError> {
-        let start = self.obj.corners.len();
+        let start = self.part.corners.len();
         let mut bad = BadWords::default();
-        for word in Words(rest) {
-            self.corner(word, &mut bad);
+        let mut words = Words(rest);
+        loop {
+            if let Some((corner, behind)) = plain_corner(words.0) {
+                self.part.corners.push(corner);
+                words.0 = behind;
+            } else if let Some(word) = words.next() {
+                self.corner(word, &mut bad);
+            } else {
+                break;
+            }
         }
-        let notes = &mut self.obj.notes;
-        let too_few = self.obj.corners.len() - start < 3;
+        let notes = &mut self.part.notes;
+        let too_few = self.part.corners.len() - start < 3;
         if too_few || bad.v.is_some() {
-            self.obj.corners.truncate(start);
+            self.part.corners.truncate(start);
             notes.add(Kind::FaceDropped, line, || match bad.v {
                 Some(word) => format!("face dropped: bad vertex index in '{}'", shown(word)),
                 None => format!(
@@ -213,66 +220,100 @@ impl Parser {
                 NONE
             })
         };
+        let (before, part) = (&self.before, &mut self.part);
         let corner = Corner {
-            v: next(self.obj.positions.len(), &mut bad.v),
-            vt: next(self.obj.uvs.len(), &mut bad.vt),
-            vn: next(self.obj.normals.len(), &mut bad.vn),
+            v: next(before.positions + part.positions.len(), &mut bad.v),
+            vt: next(before.uvs + part.uvs.len(), &mut bad.vt),
+            vn: next(before.normals + part.normals.len(), &mut bad.vn),
         };
         if corner.v == NONE {
             bad.v.get_or_insert(word);
         }
-        self.obj.corners.push(corner);
+        part.corners.push(corner);
     }
 
     /// Notes the face whose corners were added, with the state in force.
     fn finish_face(&mut self, line: usize) -> Result<(), LoadError> {
         let material = match self.material {
-            Some(index) => Some(index),
-            None => self.material_index(),
+            Some(index) => index,
+            None => self.material_index(line),
         };
-        let too_many = |what: &str| LoadError::Invalid {
-            path: self.obj.path.clone(),
-            line: Some(line),
-            message: format!("too many {what}"),
-        };
-        let material = material.ok_or_else(|| too_many("materials: 65,535 are the limit"))?;
-        let end = u32::try_from(self.obj.corners.len())
+        let part = &mut self.part;
+        let vertices = self.before.positions + part.positions.len();
+        let end = u32::try_from(part.corners.len())
             .ok()
-            .filter(|_| self.obj.positions.len() < NONE as usize)
-            .ok_or_else(|| too_many("vertices: 32-bit indices end here"))?;
-        let span = Span {
-            first: self.obj.faces.len() as u32,
+            .filter(|_| vertices < NONE as usize)
+            .ok_or_else(|| too_many_vertices(self.path, line))?;
+        let span = PartSpan {
+            first: part.faces.len(),
             material,
-            smoothing: self.smoothing,
+            smoothing: part.smoothing,
         };
-        let goes_on = |last: &Span| last.material == material && last.smoothing == span.smoothing;
-        if !self.obj.spans.last().is_some_and(goes_on) {
-            self.obj.spans.push(span);
+        let goes_on =
+            |last: &PartSpan| last.material == material && last.smoothing == span.smoothing;
+        if !part.spans.last().is_some_and(goes_on) {
+            part.spans.push(span);
         }
-        self.obj.faces.push(Face {
+        part.faces.push(Face {
             end,
             line: u32::try_from(line).unwrap_or(u32::MAX),
         });
         Ok(())
     }
 
-    /// Index of the current material, new or known; `None` beyond the limit.
-    fn material_index(&mut self) -> Option<u16> {
-        let index = match self.index_of.get(&self.current.0) {
-            Some(&index) => index,
-            None => {
-                let count = self.obj.materials.len();
-                let index = u16::try_from(count)
-                    .ok()
-                    .filter(|_| count < MAX_MATERIALS)?;
-                self.obj.materials.push(self.current.clone());
-                self.index_of.insert(self.current.0.clone(), index);
-                index
-            }
-        };
+    /// Index of the material in force, new or known.
+    fn material_index(&mut self, line: usize) -> u32 {
+        let part = &mut self.part;
+        let name = part.usemtl.as_ref().map(|(name, _)| name);
+        let next = part.materials.len() as u32;
+        let index = *self.index_of.entry(name.cloned()).or_insert(next);
+        if index == next {
+            part.materials.push(UsedMaterial {
+                usemtl: part.usemtl.clone(),
+                first_face: line,
+            });
+        }
         self.material = Some(index);
-        Some(index)
+        index
     }
+}
+
+/// The corner that comes next, and what is behind it, where it is written as most are: `1`, `1/2`, `1//3` or
+/// `1/2/3` with short positive numbers. `None` does not mean that anything is wrong.
+#[inline(always)]
+fn plain_corner(text: &[u8]) -> Option<(Corner, &[u8])> {
+    let blanks = text.iter().take_while(|b| is_blank(**b)).count();
+    let (v, rest) = plain_index(&text[blanks..])?;
+    let (mut vt, mut vn, mut rest) = (NONE, NONE, rest);
+    if let [b'/', behind @ ..] = rest {
+        (vt, rest) = plain_index(behind)?;
+        if let [b'/', behind @ ..] = rest {
+            (vn, rest) = plain_index(behind)?;
+        }
+    }
+    let ends = rest.first().is_none_or(|b| is_blank(*b));
+    (v != NONE && ends).then_some((Corner { v, vt, vn }, rest))
+}
+
+/// An index from 1 of up to nine digits as one from 0, or [`NONE`] where there is no digit; and what is behind.
+#[inline(always)]
+fn plain_index(text: &[u8]) -> Option<(u32, &[u8])> {
+    let (mut value, mut length) = (0, 0);
+    while let Some(digit) = text.get(length).map(|b| b.wrapping_sub(b'0'))
+        && digit < 10
+    {
+        if length == 9 {
+            return None;
+        }
+        value = value * 10 + u32::from(digit);
+        length += 1;
+    }
+    let index = match (length, value) {
+        (0, _) => NONE,
+        (_, 0) => return None,
+        (_, from_one) => from_one - 1,
+    };
+    Some((index, &text[length..]))
 }
 
 /// An index of a corner: [`NONE`] where absent or empty, `None` where not usable. Positive ones may point
@@ -287,50 +328,4 @@ fn index(word: Option<&[u8]>, so_far: usize) -> Option<u32> {
         i => i + i64::try_from(so_far).ok()?,
     };
     u32::try_from(from_zero).ok().filter(|&i| i != NONE)
-}
-
-fn is_freeform(keyword: &[u8]) -> bool {
-    matches!(
-        keyword,
-        b"vp"
-            | b"cstype"
-            | b"deg"
-            | b"bmat"
-            | b"step"
-            | b"curv"
-            | b"curv2"
-            | b"surf"
-            | b"parm"
-            | b"trim"
-            | b"hole"
-            | b"scrv"
-            | b"sp"
-            | b"end"
-            | b"con"
-            | b"mg"
-            | b"bsp"
-            | b"bzp"
-            | b"cdc"
-            | b"cdp"
-            | b"res"
-    )
-}
-
-/// Statements about display in other programs, which change no surface.
-fn is_display(keyword: &[u8]) -> bool {
-    matches!(
-        keyword,
-        b"bevel"
-            | b"c_interp"
-            | b"d_interp"
-            | b"lod"
-            | b"maplib"
-            | b"usemap"
-            | b"shadow_obj"
-            | b"trace_obj"
-            | b"ctech"
-            | b"stech"
-            | b"call"
-            | b"csh"
-    )
 }
