@@ -170,7 +170,7 @@ fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
     pair(text, &[',']).ok_or_else(|| "a pixel is column,row, such as 640,360".to_owned())
 }
 
-fn parse_set(text: &str) -> Result<(String, String), String> {
+pub(super) fn parse_set(text: &str) -> Result<(String, String), String> {
     text.split_once('=')
         .map(|(key, value)| (key.trim().to_owned(), value.trim().to_owned()))
         .ok_or_else(|| "an assignment is KEY=VALUE, such as camera.vfov_deg=30".to_owned())

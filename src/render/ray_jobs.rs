@@ -5,6 +5,7 @@
 
 use super::film::{centre_first, tiles_of};
 use super::frame::{FrameLight, FrameLightKind};
+use super::ray_list::{RayKind, RayList};
 use super::stages::light::{LIGHT_END, arriving};
 use super::stages::{Mirrors, trace};
 use super::tile::Tile;
@@ -17,108 +18,6 @@ use crate::surface::{SurfaceInteraction, SurfaceParts, surface_at};
 const BLOCK_SIZE: u32 = 8;
 /// A mirror ray with a smaller share of its pixel than this is not followed, as in the stages.
 const MIN_WEIGHT: f32 = 1.0 / 512.0;
-
-/// Why a ray is sent.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RayKind {
-    /// From the eye.
-    Camera,
-    /// From a surface to a point light.
-    PointShadow,
-    /// From a surface to a directional light.
-    SunShadow,
-    /// From a mirror.
-    Mirror,
-}
-
-/// What is asked about a ray.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RayQuery {
-    /// The closest hit.
-    Closest,
-    /// Whether there is a hit.
-    Any,
-}
-
-impl RayKind {
-    /// All kinds.
-    pub const ALL: [Self; 4] = [
-        Self::Camera,
-        Self::PointShadow,
-        Self::SunShadow,
-        Self::Mirror,
-    ];
-
-    /// Name on the command line and in files.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Camera => "camera",
-            Self::PointShadow => "point-shadow",
-            Self::SunShadow => "sun-shadow",
-            Self::Mirror => "mirror",
-        }
-    }
-
-    /// The kind of that [`Self::name`].
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| kind.name() == name)
-    }
-
-    /// What the renderer asks about it.
-    #[must_use]
-    pub const fn query(self) -> RayQuery {
-        match self {
-            Self::Camera | Self::Mirror => RayQuery::Closest,
-            Self::PointShadow | Self::SunShadow => RayQuery::Any,
-        }
-    }
-
-    const fn is_sent_to(self, light: &FrameLight) -> bool {
-        match light.kind {
-            FrameLightKind::Point(..) => matches!(self, Self::PointShadow),
-            FrameLightKind::Directional(_) => matches!(self, Self::SunShadow),
-        }
-    }
-}
-
-/// Rays with the distances at which they end, internal units. A place without a ray ends below 0.
-#[derive(Debug, Clone, Default)]
-pub struct RayList {
-    /// The rays; anything where there is none.
-    pub rays: Vec<Ray>,
-    /// Their ends; at least 0 where there is a ray.
-    pub t_max: Vec<f32>,
-}
-
-impl RayList {
-    /// The end of a place without a ray.
-    pub const INACTIVE: f32 = -1.0;
-
-    /// Adds a ray, or a place without one.
-    pub fn push(&mut self, ray: Option<(Ray, f32)>) {
-        let nothing = Ray {
-            origin: glam::Vec3::ZERO,
-            dir: glam::Vec3::ZERO,
-        };
-        let (ray, t_max) = ray.unwrap_or((nothing, Self::INACTIVE));
-        self.rays.push(ray);
-        self.t_max.push(t_max);
-    }
-
-    /// Whether there is a ray that ends here; not for NaN.
-    #[must_use]
-    pub fn is_active(t_max: f32) -> bool {
-        t_max >= 0.0
-    }
-
-    /// Number of rays, places without one left out.
-    #[must_use]
-    pub fn active(&self) -> usize {
-        self.t_max.iter().filter(|t| Self::is_active(**t)).count()
-    }
-}
 
 /// Rays of `kind` that the first sample of every pixel sends, in the tracer's order: tiles from the middle
 /// outwards, bounce by bounce, light by light, pixels in blocks of 8 × 8.
@@ -177,7 +76,7 @@ fn walk(frame: &Frame<'_>, kind: RayKind, mut sent: Vec<Sent>, list: &mut RayLis
             Mirrors::Follow
         };
         let points = points(frame, &sent);
-        let lights = frame.lights.iter().filter(|l| kind.is_sent_to(l));
+        let lights = frame.lights.iter().filter(|light| is_sent_to(kind, light));
         for light in lights.filter(|_| frame.shadows) {
             for point in &points {
                 let point = point.as_ref();
@@ -192,6 +91,14 @@ fn walk(frame: &Frame<'_>, kind: RayKind, mut sent: Vec<Sent>, list: &mut RayLis
         if sent.iter().all(Option::is_none) {
             return;
         }
+    }
+}
+
+/// Whether shadow rays to this light are of that kind.
+const fn is_sent_to(kind: RayKind, light: &FrameLight) -> bool {
+    match light.kind {
+        FrameLightKind::Point(..) => matches!(kind, RayKind::PointShadow),
+        FrameLightKind::Directional(_) => matches!(kind, RayKind::SunShadow),
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-use crate::cli::args::{LoadArgs, MAX_THREADS, parse_size};
+use crate::cli::args::{LoadArgs, MAX_THREADS, parse_set, parse_size};
 use crate::geometry::simd::SimdLevel;
 use crate::render::RayKind;
 
@@ -33,6 +33,9 @@ pub(in crate::cli) struct BenchArgs {
     /// Picture size in pixels [default: 1280x720]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
+    /// Set a key of every INPUT's scene file; may be repeated, later ones win
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = parse_set)]
+    pub set: Vec<(String, String)>,
     /// Write the triangles of INPUT and the rays of this kind...
     #[arg(long, value_name = "KIND", requires = "dump_rays", value_parser = kind_parser())]
     pub kind: Option<RayKind>,
@@ -40,7 +43,7 @@ pub(in crate::cli) struct BenchArgs {
     #[arg(long, value_name = "FILE", requires = "kind", conflicts_with_all = ["json", "quick", "threads", "passes"])]
     pub dump_rays: Option<PathBuf>,
     /// Time the rays of this file instead of pictures
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["inputs", "quick", "size", "kind", "dump_rays", "no_normalize"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["inputs", "quick", "size", "set", "kind", "dump_rays", "no_normalize"])]
     pub rays: Option<PathBuf>,
     /// Write what the rays of --rays hit
     #[arg(long, value_name = "FILE", requires = "rays")]

@@ -5,11 +5,10 @@ use std::path::PathBuf;
 use super::BenchArgs;
 use crate::cli::error::CliError;
 use crate::cli::input::DEFAULT_SIZE;
-use crate::cli::options::check_place;
+use crate::cli::options::{SceneOptions, check_place};
 use crate::geometry::simd::force_level;
 use crate::render::RayKind;
 use crate::scene::built_in_names;
-use crate::scene::load::LoadOptions;
 
 /// Scenes of a quick table: one with many maps, one that is all triangles.
 const QUICK_SCENES: [&str; 2] = ["wall", "torus-study"];
@@ -32,10 +31,8 @@ pub(super) enum BenchOptions {
 /// The whole table.
 #[derive(Debug)]
 pub(super) struct TableOptions {
-    /// Models, scene files or built-in names; at least one.
-    pub inputs: Vec<PathBuf>,
-    /// How to read them.
-    pub load: LoadOptions,
+    /// The scenes, with what is changed about them; at least one.
+    pub scenes: Vec<SceneOptions>,
     /// Picture size, pixels.
     pub size: [u32; 2],
     /// Numbers of threads, growing; at least one.
@@ -51,12 +48,8 @@ pub(super) struct TableOptions {
 /// A file of rays from a scene.
 #[derive(Debug)]
 pub(super) struct DumpOptions {
-    /// Model, scene file or built-in name.
-    pub input: PathBuf,
-    /// How to read it.
-    pub load: LoadOptions,
-    /// Picture size, pixels.
-    pub size: [u32; 2],
+    /// The scene, with what is changed about it.
+    pub scene: SceneOptions,
     /// Which rays.
     pub kind: RayKind,
     /// Where to.
@@ -98,13 +91,20 @@ impl BenchArgs {
                 json: self.json,
             }));
         }
+        let load = self.load.check();
+        let scene = |input| SceneOptions {
+            input,
+            load: load.clone(),
+            // A scene's own size would make its times incomparable.
+            size: Some(size),
+            method: None,
+            overrides: self.set.clone(),
+        };
         if let (Some(kind), Some(output)) = (self.kind, self.dump_rays) {
             let [input] = <[PathBuf; 1]>::try_from(self.inputs)
                 .map_err(|_| CliError::Arguments("--dump-rays takes the rays of one INPUT"))?;
             return Ok(BenchOptions::Dump(DumpOptions {
-                input,
-                load: self.load.check(),
-                size,
+                scene: scene(input),
                 kind,
                 output: check_place(output)?,
             }));
@@ -117,8 +117,7 @@ impl BenchArgs {
             built_in_names().into_iter().map(PathBuf::from).collect()
         };
         Ok(BenchOptions::Table(TableOptions {
-            inputs,
-            load: self.load.check(),
+            scenes: inputs.into_iter().map(scene).collect(),
             size,
             threads,
             passes,

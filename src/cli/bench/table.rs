@@ -1,6 +1,5 @@
 //! The whole table: frames, scaling, rays, growth.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use serde_json::json;
@@ -9,14 +8,15 @@ use super::options::TableOptions;
 use super::report::Report;
 use super::rows;
 use crate::cli::error::CliError;
-use crate::cli::input::load;
+use crate::cli::input::{load_changed, snapshot};
+use crate::cli::options::SceneOptions;
 use crate::measure::bench::{FrameCase, Growth, RayRace, Spread, Study, scalar_twin};
 use crate::render::{RayKind, Snapshot, rays_of};
 use crate::surface::mapping::Method;
 
 /// Runs the command.
 pub(super) fn run(options: &TableOptions) -> Result<(), CliError> {
-    let scenes = options.inputs.iter().map(|input| scene(input, options));
+    let scenes = options.scenes.iter().map(scene);
     let scenes = scenes.collect::<Result<Vec<_>, CliError>>()?;
     let mut report = Report::new(options.json);
     report.machine(json!({
@@ -34,14 +34,9 @@ pub(super) fn run(options: &TableOptions) -> Result<(), CliError> {
 /// A scene with its name, as the user called it.
 type Named = (String, Snapshot);
 
-fn scene(input: &Path, options: &TableOptions) -> Result<Named, CliError> {
-    let loaded = load(input, &options.load)?;
-    let snapshot = Snapshot {
-        scene: loaded.scene,
-        settings: Arc::new(loaded.settings),
-        size: options.size,
-    };
-    Ok((input.display().to_string(), snapshot))
+fn scene(options: &SceneOptions) -> Result<Named, CliError> {
+    let snapshot = snapshot(load_changed(options)?);
+    Ok((options.input.display().to_string(), snapshot))
 }
 
 fn by_method(snapshot: &Snapshot, method: Method) -> Snapshot {

@@ -32,8 +32,9 @@ const KINDS: [&str; 5] = ["camera", "point-shadow", "sun-shadow", "mirror", "dif
 const TRIANGLE_BYTES: usize = 9 * 4;
 const RAY_BYTES: usize = 8 * 4;
 
-/// Squared lengths this near to 1 are those of unit vectors that were rounded.
-const UNIT_TOLERANCE: f64 = 1e-6;
+/// Squared lengths this near to 1 are those of unit vectors that were rounded, by one reflection after another.
+/// Distances are exact all the same: the triangle tests count in lengths of the direction.
+const UNIT_TOLERANCE: f64 = 1e-4;
 
 /// What a file holds.
 #[derive(Debug, Clone)]
