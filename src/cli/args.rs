@@ -5,12 +5,13 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 
+use super::bench::BenchArgs;
 use super::help;
 use crate::scene::file::check_size;
 use crate::surface::mapping::Method;
 
 /// Most worker threads that can be asked for.
-const MAX_THREADS: i64 = 1024;
+pub(super) const MAX_THREADS: i64 = 1024;
 
 /// What a surface map really does to a picture.
 #[derive(Debug, Parser)]
@@ -46,6 +47,9 @@ pub(super) enum Command {
     /// Tell the whole story of one pixel
     #[command(after_help = help::PROBE_EXAMPLES, after_long_help = help::probe_details())]
     Probe(ProbeArgs),
+    /// Time frames, rays and their growth; write and race files of rays
+    #[command(after_help = help::BENCH_EXAMPLES, after_long_help = help::bench_details())]
+    Bench(BenchArgs),
     /// List the ways of perturbing a surface
     Methods,
     /// List the built-in scenes
@@ -156,7 +160,7 @@ fn pair(text: &str, separators: &[char]) -> Option<[u32; 2]> {
     Some([a.trim().parse().ok()?, b.trim().parse().ok()?])
 }
 
-fn parse_size(text: &str) -> Result<[u32; 2], String> {
+pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let size = pair(text, &['x', 'X', '×']).ok_or("a size is columns x rows, such as 1280x720")?;
     check_size(size).map_err(|why| format!("a size {why}"))?;
     Ok(size)
@@ -166,7 +170,7 @@ fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
     pair(text, &[',']).ok_or_else(|| "a pixel is column,row, such as 640,360".to_owned())
 }
 
-fn parse_set(text: &str) -> Result<(String, String), String> {
+pub(super) fn parse_set(text: &str) -> Result<(String, String), String> {
     text.split_once('=')
         .map(|(key, value)| (key.trim().to_owned(), value.trim().to_owned()))
         .ok_or_else(|| "an assignment is KEY=VALUE, such as camera.vfov_deg=30".to_owned())

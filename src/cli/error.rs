@@ -39,6 +39,26 @@ pub(super) enum CliError {
         /// Columns and rows of the picture.
         size: [u32; 2],
     },
+    /// Something cannot be timed.
+    #[error(transparent)]
+    Bench(#[from] crate::measure::bench::BenchError),
+    /// A file of rays cannot be read or written.
+    #[error(transparent)]
+    Rays(#[from] crate::measure::bench::ray_file::RayFileError),
+    /// Vector instructions that this machine does not have.
+    #[error("--level: {0}")]
+    Level(#[from] crate::geometry::simd::UnsupportedLevel),
+    /// Nothing to do what was asked with.
+    #[error("{}: {message}", path.display())]
+    NothingToTime {
+        /// What was given.
+        path: PathBuf,
+        /// What it lacks.
+        message: String,
+    },
+    /// Arguments that do not go together, beyond what the parser sees.
+    #[error("{0}")]
+    Arguments(&'static str),
     /// No window; the line names what to do instead.
     #[error("{0}")]
     NoWindow(String),

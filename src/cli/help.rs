@@ -31,12 +31,14 @@ Examples:
   reliefscope inspect model.obj
       says what was found in a model, and what was doubtful about it
   reliefscope probe scene.toml --pixel 320,180
-      tells every step from one pixel's ray to its colour";
+      tells every step from one pixel's ray to its colour
+  reliefscope bench --quick
+      times frames and rays on this machine";
 
 const EXIT_CODES: &str = "\
 Exit codes:
   0  good
-  1  a measured threshold failed
+  1  a measured threshold failed, or an answer was wrong
   2  could not run: bad arguments, unreadable input, no display
 
 Warnings about an input go to stderr as FILE:LINE: MESSAGE; answers go to stdout.
@@ -64,6 +66,30 @@ Examples:
   reliefscope probe wall --pixel 640,360
   reliefscope probe scene.toml --size 320x180 --pixel 10,20 --method parallax --json";
 
+/// Behind `bench -h`.
+pub(super) const BENCH_EXAMPLES: &str = "\
+Examples:
+  reliefscope bench --quick
+  reliefscope bench wall scene.toml --threads 1,8 --json
+  reliefscope bench model.obj --kind camera --dump-rays camera.rays
+  reliefscope bench --rays camera.rays --hits camera.hits";
+
+const BENCH: &str = "\
+Each answer is checked before it is timed: rays traced together find what each finds alone, vector
+code gives the picture of scalar code, re-shading gives the picture of rendering afresh, all to the
+bit. If one is wrong the exit code is 1. Times are medians, with the least and the greatest.
+
+The table has four parts:
+  frame    for every scene and method: taking a new snapshot, preview of one pixel in four, one
+           sample of each pixel, the same from known hits after a light has changed, encoding
+  scaling  one sample of each pixel with each number of threads
+  rays     millions of rays a second by kind: camera, point-shadow, sun-shadow, mirror
+  growth   one sample of each pixel against triangles, lights, mirror bounces, picture size
+
+A file of rays holds the triangles in the units in which they are traced (a model is centred and
+scaled by a power of two unless --no-normalize), and a place for each pixel whether it sends a ray
+or not. Holes of cut-out maps count as solid. docs/performance.md says more, and the format.";
+
 /// Behind `--help`: examples, methods, scenes, exit codes.
 pub(super) fn overview() -> String {
     format!("{EXAMPLES}\n\n{}\n{}\n{EXIT_CODES}", methods(), scenes())
@@ -77,6 +103,11 @@ pub(super) fn render_details() -> String {
 /// Behind `probe --help`.
 pub(super) fn probe_details() -> String {
     format!("{PROBE_EXAMPLES}\n\n{SET}\n\n{}", methods())
+}
+
+/// Behind `bench --help`.
+pub(super) fn bench_details() -> String {
+    format!("{BENCH_EXAMPLES}\n\n{BENCH}")
 }
 
 const SET: &str = "\

@@ -12,7 +12,7 @@ use crate::scene::load::LoadOptions;
 use crate::scene::{LoadedScene, open};
 
 /// Size of a picture where neither the scene nor the user says one, pixels.
-const DEFAULT_SIZE: [u32; 2] = [1280, 720];
+pub(super) const DEFAULT_SIZE: [u32; 2] = [1280, 720];
 
 /// Reads an input; its warnings go to standard error.
 pub(super) fn load(input: &Path, options: &LoadOptions) -> Result<LoadedScene, CliError> {

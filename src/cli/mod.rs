@@ -2,9 +2,10 @@
 //!
 //! - `args`: what may be typed, for the parser; `help`: what `--help` teaches
 //! - `options`: arguments after checking, as commands take them
-//! - `render`, `inspect`, `probe`, `lists`: one file per command; `input`: what they share
+//! - `render`, `inspect`, `probe`, `lists`: one file per command; `bench`: a room; `input`: what they share
 
 mod args;
+mod bench;
 mod error;
 mod help;
 mod input;
@@ -36,7 +37,9 @@ pub struct ViewRequest {
     pub normalize: bool,
 }
 
-/// Exit code of a run that could not do what it was asked to. 1 is kept for measured thresholds that failed.
+/// Exit code of a run that found a wrong answer, or a measured threshold that failed.
+const FAILED: u8 = 1;
+/// Exit code of a run that could not do what it was asked to.
 const COULD_NOT_RUN: u8 = 2;
 
 /// Runs the command line and returns the exit code: 0 good, 1 a measured threshold failed, 2 could not run.
@@ -54,7 +57,10 @@ pub fn run(
         Ok(()) | Err(CliError::ReaderGone) => ExitCode::SUCCESS,
         Err(error) => {
             output::complain(&format!("error: {error}"));
-            ExitCode::from(COULD_NOT_RUN)
+            match error {
+                CliError::Bench(error) if error.is_wrong_answer() => ExitCode::from(FAILED),
+                _ => ExitCode::from(COULD_NOT_RUN),
+            }
         }
     }
 }
@@ -81,6 +87,7 @@ fn dispatch(
         Some(Command::Render(args)) => render::run(&args.check()?),
         Some(Command::Inspect(args)) => inspect::run(&args.check()),
         Some(Command::Probe(args)) => probe::run(&args.check()),
+        Some(Command::Bench(args)) => bench::run(args),
         Some(Command::Methods) => lists::methods(),
         Some(Command::Scenes) => lists::scenes(),
     }

@@ -83,7 +83,8 @@ impl ViewArgs {
 }
 
 impl LoadArgs {
-    fn check(&self) -> LoadOptions {
+    /// Nothing can be wrong.
+    pub fn check(&self) -> LoadOptions {
         LoadOptions {
             normalize: !self.no_normalize,
             ..LoadOptions::default()
@@ -148,7 +149,8 @@ fn format_of(output: &Path) -> Result<PictureFormat, CliError> {
     }
 }
 
-fn check_place(output: PathBuf) -> Result<PathBuf, CliError> {
+/// Refuses a place where no file can be written.
+pub(super) fn check_place(output: PathBuf) -> Result<PathBuf, CliError> {
     let folder = output.parent().filter(|p| *p != Path::new(""));
     let message = match folder {
         _ if output.is_dir() => Some("is a folder".to_owned()),

@@ -1,5 +1,7 @@
-//! How far a picture or a number is from the truth: the report's equations, and distances of pictures.
+//! How far a picture or a number is from the truth, and how long it took: the report's equations, distances
+//! of pictures, benchmarks.
 
+pub mod bench;
 pub mod metrics;
 mod picture;
 pub mod report_equations;

@@ -29,8 +29,8 @@ pub struct Tile {
     pub first_stride: Option<u32>,
     /// Counts since the snapshot was taken.
     pub counters: Counters,
-    /// Pixels of a full pass.
-    inside: Places,
+    /// Places of a full pass that lie in the picture.
+    pub inside: Places,
     /// Sums of linear samples.
     sums: Box<Column3>,
     /// Hits of the first samples of pixels whose column and row are multiples of `known`.

@@ -89,7 +89,7 @@ fn write(path: &Path, picture: &DynamicImage, format: ImageFormat) -> Result<(),
 }
 
 /// A temporary file in the folder of `path`: a rename is atomic only within one file system.
-pub(super) fn temporary_beside(path: &Path) -> std::io::Result<NamedTempFile> {
+pub(crate) fn temporary_beside(path: &Path) -> std::io::Result<NamedTempFile> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),

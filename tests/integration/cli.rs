@@ -93,7 +93,9 @@ fn help_teaches() {
     ] {
         assert!(text.contains(word), "{word}");
     }
-    for command in ["view", "render", "inspect", "probe", "methods", "scenes"] {
+    for command in [
+        "view", "render", "inspect", "probe", "bench", "methods", "scenes",
+    ] {
         assert!(good(&folder, &[command, "--help"]).contains("Usage:"));
     }
     assert!(good(&folder, &["--version"]).contains(env!("CARGO_PKG_VERSION")));

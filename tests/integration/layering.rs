@@ -12,7 +12,15 @@ const ROOMS: [&str; 10] = [
 /// Outside crates that have a door, and where under `src` it is.
 const DOORS: [(&str, &[&str]); 13] = [
     ("fearless_simd", &["math/simd"]),
-    ("rayon", &["geometry/bvh/build", "scene/load", "render"]),
+    (
+        "rayon",
+        &[
+            "geometry/bvh/build",
+            "scene/load",
+            "render",
+            "measure/bench",
+        ],
+    ),
     ("image", &["scene/load", "scene/save_picture"]),
     ("tempfile", &["scene/file", "scene/save_picture"]),
     ("tobj", &[]),

@@ -38,14 +38,7 @@ pub fn reflected_light(
         surfaces,
     });
     for light in &frame.lights {
-        frame.level.run_or_plain(AimAtLight {
-            frame,
-            light,
-            mirrors,
-            count: rays.count,
-            surfaces,
-            shadows,
-        });
+        aim_at_light(frame, light, mirrors, rays, surfaces, shadows);
         shadows.occluded = Places::EMPTY;
         if frame.shadows && !shadows.lit.is_empty() {
             any_hits(frame, rays.count, shadows, counters);
@@ -59,6 +52,25 @@ pub fn reflected_light(
             counters,
         });
     }
+}
+
+/// Sets the shadow rays to one light.
+pub fn aim_at_light(
+    frame: &Frame<'_>,
+    light: &FrameLight,
+    mirrors: Mirrors,
+    rays: &Rays,
+    surfaces: &Surfaces,
+    shadows: &mut Shadows,
+) {
+    frame.level.run_or_plain(AimAtLight {
+        frame,
+        light,
+        mirrors,
+        count: rays.count,
+        surfaces,
+        shadows,
+    });
 }
 
 /// Starts with the light from everywhere.

@@ -1,0 +1,139 @@
+//! A frame's parts, as the window meets them while a person works.
+
+use std::sync::Arc;
+
+use super::check::same_picture;
+use super::spread::millis;
+use super::{BenchError, Spread};
+use crate::render::{Counters, Picture, Progressive, Snapshot};
+use crate::scene::Scene;
+
+/// Preview stride that is timed.
+const STRIDE: u32 = 4;
+/// How far the camera turns between frames, radians: a step of a slow drag.
+const TURN: f64 = 0.01;
+
+/// One view of one scene by one method.
+#[derive(Debug, Clone)]
+pub struct FrameCase {
+    snapshot: Snapshot,
+}
+
+/// What the parts of a frame take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrameTimes {
+    /// Taking a new snapshot whose camera has moved, ms.
+    pub start: Spread,
+    /// The preview that has one pixel in four, across and down, ms.
+    pub preview: Spread,
+    /// One sample of each pixel, nothing known before, ms.
+    pub full: Spread,
+    /// One sample of each pixel after a light has changed, from the hits that are known, ms.
+    pub reshade: Spread,
+    /// From linear colours to those of the screen, ms.
+    pub encode: Spread,
+    /// What the full pass computed.
+    pub counters: Counters,
+}
+
+impl FrameCase {
+    /// The snapshot is what the full pass renders.
+    #[must_use]
+    pub const fn new(snapshot: Snapshot) -> Self {
+        Self { snapshot }
+    }
+
+    /// Re-shading gives the picture that rendering afresh does, and vectors the one that `twin` does: the
+    /// same scene at another level.
+    ///
+    /// # Errors
+    /// If not, or if there are no threads.
+    pub fn check(&self, twin: &Arc<Scene>) -> Result<(), BenchError> {
+        let lit = self.lit();
+        let fresh = first_sample(&[&lit])?;
+        let again = first_sample(&[&self.snapshot, &lit])?;
+        same_picture("re-shading", &fresh, &again)?;
+        let scalar = Snapshot {
+            scene: Arc::clone(twin),
+            ..lit
+        };
+        same_picture("vector code", &fresh, &first_sample(&[&scalar])?)
+    }
+
+    /// Times each part `rounds` times, after a round that warms up.
+    ///
+    /// # Errors
+    /// If there are no threads.
+    pub fn time(&self, threads: usize, rounds: usize) -> Result<FrameTimes, BenchError> {
+        let mut renderer = renderer(threads)?;
+        let mut rgba = vec![[0; 4]; self.snapshot.size.map(|n| n as usize).iter().product()];
+        let (turned, lit) = (self.turned(), self.lit());
+        let mut times: [Vec<f64>; 5] = Default::default();
+        let mut counters = Counters::default();
+        for round in 0..=rounds {
+            renderer.start(turned.clone());
+            let preview = millis(|| {
+                renderer.preview(STRIDE, &|| false);
+            });
+            let start = millis(|| renderer.start(self.snapshot.clone()));
+            let full = millis(|| {
+                renderer.pass(&|| false);
+            });
+            counters = renderer.counters();
+            let encode = millis(|| renderer.encode_into(0.0, &mut rgba));
+            renderer.start(lit.clone());
+            let reshade = millis(|| {
+                renderer.pass(&|| false);
+            });
+            if round > 0 {
+                let round = [start, preview, full, reshade, encode];
+                times.iter_mut().zip(round).for_each(|(t, ms)| t.push(ms));
+            }
+        }
+        let [start, preview, full, reshade, encode] = times.map(Spread::of);
+        Ok(FrameTimes {
+            start,
+            preview,
+            full,
+            reshade,
+            encode,
+            counters,
+        })
+    }
+
+    /// The same with the camera turned a little.
+    fn turned(&self) -> Snapshot {
+        let mut settings = (*self.snapshot.settings).clone();
+        settings.camera.orbit(TURN, 0.0);
+        Snapshot {
+            settings: Arc::new(settings),
+            ..self.snapshot.clone()
+        }
+    }
+
+    /// The same with the first light changed a little.
+    fn lit(&self) -> Snapshot {
+        let mut settings = (*self.snapshot.settings).clone();
+        if let Some(light) = settings.lights.first_mut() {
+            light.intensity *= 1.01;
+        }
+        Snapshot {
+            settings: Arc::new(settings),
+            ..self.snapshot.clone()
+        }
+    }
+}
+
+/// The first sample of the last snapshot, after passes of those before it.
+fn first_sample(snapshots: &[&Snapshot]) -> Result<Picture, BenchError> {
+    let mut renderer = renderer(0)?;
+    for &snapshot in snapshots {
+        renderer.start(snapshot.clone());
+        renderer.pass(&|| false);
+    }
+    Ok(renderer.picture())
+}
+
+fn renderer(threads: usize) -> Result<Progressive, BenchError> {
+    Progressive::new(threads).map_err(BenchError::Threads)
+}

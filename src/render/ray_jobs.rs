@@ -1,0 +1,72 @@
+//! The rays of one kind that a picture's first pass sends, as a list: for timing them alone, and for other tracers.
+//!
+//! The very stages that render tiles make them. As many rays of each kind are active as
+//! [`Counters`] counts.
+
+use super::film::{centre_first, tiles_of};
+use super::frame::{FrameLight, FrameLightKind};
+use super::ray_list::{RayKind, RayList};
+use super::sites::Sites;
+use super::stages::{PLACES, Places, Scratch, bounce, camera, light, mirrors_at, surface, trace};
+use super::{Counters, Frame, Snapshot};
+use crate::geometry::RayLanes;
+
+/// Rays of `kind` that the first sample of every pixel sends, in the tracer's order: tiles from the middle
+/// outwards, bounce by bounce, light by light, pixels in blocks of 8 × 8.
+///
+/// Pixels keep their places within a tile: one that sends no such ray leaves an inactive place.
+#[must_use]
+pub fn rays_of(snapshot: &Snapshot, kind: RayKind) -> RayList {
+    let frame = Frame::new(snapshot);
+    let tiles = tiles_of(snapshot.size);
+    let (mut list, mut scratch) = (RayList::default(), Scratch::default());
+    for index in centre_first(&tiles, snapshot.size) {
+        let tile = &tiles[index];
+        let (corner, sample) = ([tile.x0, tile.y0], (tile.inside, 0));
+        camera::camera_rays(&frame, Sites::all(), corner, sample, &mut scratch.work.rays);
+        walk(&frame, kind, &mut scratch, &mut list);
+    }
+    list
+}
+
+/// Follows a tile's rays through all bounces.
+fn walk(frame: &Frame<'_>, kind: RayKind, scratch: &mut Scratch, list: &mut RayList) {
+    let Scratch { hits, work } = scratch;
+    let counters = &mut Counters::default();
+    for index in 0..=frame.max_bounces {
+        let mirrors = mirrors_at(frame, index);
+        if kind == RayKind::Camera || (kind == RayKind::Mirror && index > 0) {
+            add(list, &work.rays.lanes, work.rays.active);
+        }
+        if kind == RayKind::Camera || (kind == RayKind::Mirror && index == frame.max_bounces) {
+            return;
+        }
+        trace::closest_hits(frame, &work.rays, hits, counters);
+        surface::mapped_surfaces(frame, &work.rays, hits, &mut work.surfaces, counters);
+        let lights = frame.lights.iter().filter(|light| is_sent_to(kind, light));
+        for light in lights.filter(|_| frame.shadows) {
+            let shadows = &mut work.shadows;
+            light::aim_at_light(frame, light, mirrors, &work.rays, &work.surfaces, shadows);
+            add(list, &shadows.rays, shadows.lit);
+        }
+        work.rays.active = bounce::turn_to_mirror_rays(frame, &mut work.rays, &work.surfaces);
+        if work.rays.active.is_empty() {
+            return;
+        }
+    }
+}
+
+fn add(list: &mut RayList, rays: &RayLanes<PLACES>, active: Places) {
+    for place in 0..PLACES {
+        let ray = active.contains(place).then(|| rays.ray(place));
+        list.push(ray.map(|ray| (ray, rays.t_max.0[place])));
+    }
+}
+
+/// Whether shadow rays to this light are of that kind.
+const fn is_sent_to(kind: RayKind, light: &FrameLight) -> bool {
+    match light.kind {
+        FrameLightKind::Point(..) => matches!(kind, RayKind::PointShadow),
+        FrameLightKind::Directional(_) => matches!(kind, RayKind::SunShadow),
+    }
+}
