@@ -24,19 +24,30 @@ pub fn rays_of(snapshot: &Snapshot, kind: RayKind) -> RayList {
         let tile = &tiles[index];
         let (corner, sample) = ([tile.x0, tile.y0], (tile.inside, 0));
         camera::camera_rays(&frame, Sites::all(), corner, sample, &mut scratch.work.rays);
-        walk(&frame, kind, &mut scratch, &mut list);
+        let mut add = |rays: &RayLanes<PLACES>, active: Places| {
+            for place in tile.inside.iter() {
+                let ray = active.contains(place).then(|| rays.ray(place));
+                list.push(ray.map(|ray| (ray, rays.t_max.0[place])));
+            }
+        };
+        walk(&frame, kind, &mut scratch, &mut add);
     }
     list
 }
 
-/// Follows a tile's rays through all bounces.
-fn walk(frame: &Frame<'_>, kind: RayKind, scratch: &mut Scratch, list: &mut RayList) {
+/// Follows a tile's rays through all bounces and adds those of one kind, with their places.
+fn walk(
+    frame: &Frame<'_>,
+    kind: RayKind,
+    scratch: &mut Scratch,
+    add: &mut impl FnMut(&RayLanes<PLACES>, Places),
+) {
     let Scratch { hits, work } = scratch;
     let counters = &mut Counters::default();
     for index in 0..=frame.max_bounces {
         let mirrors = mirrors_at(frame, index);
         if kind == RayKind::Camera || (kind == RayKind::Mirror && index > 0) {
-            add(list, &work.rays.lanes, work.rays.active);
+            add(&work.rays.lanes, work.rays.active);
         }
         if kind == RayKind::Camera || (kind == RayKind::Mirror && index == frame.max_bounces) {
             return;
@@ -47,19 +58,12 @@ fn walk(frame: &Frame<'_>, kind: RayKind, scratch: &mut Scratch, list: &mut RayL
         for light in lights.filter(|_| frame.shadows) {
             let shadows = &mut work.shadows;
             light::aim_at_light(frame, light, mirrors, &work.rays, &work.surfaces, shadows);
-            add(list, &shadows.rays, shadows.lit);
+            add(&shadows.rays, shadows.lit);
         }
         work.rays.active = bounce::turn_to_mirror_rays(frame, &mut work.rays, &work.surfaces);
         if work.rays.active.is_empty() {
             return;
         }
-    }
-}
-
-fn add(list: &mut RayList, rays: &RayLanes<PLACES>, active: Places) {
-    for place in 0..PLACES {
-        let ray = active.contains(place).then(|| rays.ray(place));
-        list.push(ray.map(|ray| (ray, rays.t_max.0[place])));
     }
 }
 
