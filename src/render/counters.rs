@@ -26,6 +26,18 @@ pub struct Counters {
 }
 
 impl Counters {
+    /// Nothing yet.
+    pub const ZERO: Self = Self {
+        camera_rays: 0,
+        shadow_rays: 0,
+        mirror_rays: 0,
+        texture_fetches: 0,
+        perturbations: 0,
+        power_calls: 0,
+        cutout_tests: 0,
+        non_finite: 0,
+    };
+
     /// Rays of all kinds.
     #[must_use]
     pub const fn rays(&self) -> u64 {

@@ -1,5 +1,11 @@
-//! The picture so far, read tile by tile.
+//! Every `stride`-th pixel of a picture, in tiles.
 
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use rayon::prelude::*;
+
+use super::Counters;
+use super::sites::{BLOCK_SIZE, place_of};
 use super::tile::{TILE_SIZE, Tile};
 use crate::math::LinearRgb;
 
@@ -35,23 +41,92 @@ impl Picture {
     }
 }
 
-/// The tiles that cover a picture, in rows.
-#[must_use]
-pub fn tiles_of([width, height]: [u32; 2]) -> Vec<Tile> {
-    let starts = |n: u32| (0..n).step_by(TILE_SIZE as usize);
-    starts(height)
-        .flat_map(|y| starts(width).map(move |x| (x, y)))
-        .map(|(x, y)| Tile::new(x, y, TILE_SIZE.min(width - x), TILE_SIZE.min(height - y)))
-        .collect()
+/// The samples of every `stride`-th pixel of a picture in both directions.
+#[derive(Debug)]
+pub struct Film {
+    /// Pixels of the picture from one of the film's to the next.
+    pub stride: u32,
+    /// Columns and rows of the film.
+    pub size: [u32; 2],
+    /// In rows.
+    pub tiles: Vec<Mutex<Tile>>,
+    /// Indices of the tiles in the order of work, those nearest to the middle first: what people look at is
+    /// done first.
+    pub order: Vec<usize>,
 }
 
-/// Indices of the tiles, the ones nearest to the picture's centre first: what people look at is done
-/// first.
-#[must_use]
-pub fn centre_first(tiles: &[Tile], [width, height]: [u32; 2]) -> Vec<usize> {
-    let distance = |t: &Tile| {
-        let dx = i64::from(2 * t.x0 + t.width) - i64::from(width);
-        let dy = i64::from(2 * t.y0 + t.height) - i64::from(height);
+impl Film {
+    /// An empty film of a picture of this size.
+    #[must_use]
+    pub fn new(picture: [u32; 2], stride: u32) -> Self {
+        let size = picture.map(|n| n.div_ceil(stride));
+        let starts = |n: u32| (0..n).step_by(TILE_SIZE as usize);
+        let corners = starts(size[1]).flat_map(|y| starts(size[0]).map(move |x| [x, y]));
+        let tiles: Vec<Tile> = corners
+            .map(|[x, y]| {
+                let rest = [size[0] - x, size[1] - y];
+                Tile::new([x, y], rest.map(|n| n.min(TILE_SIZE)), stride)
+            })
+            .collect();
+        Self {
+            stride,
+            size,
+            order: centre_first(&tiles, size),
+            tiles: tiles.into_iter().map(Mutex::new).collect(),
+        }
+    }
+
+    /// Forgets the picture; and the hits too, unless they are still true.
+    pub fn reset(&mut self, keep_hits: bool) {
+        for tile in &mut self.tiles {
+            tile.get_mut()
+                .unwrap_or_else(PoisonError::into_inner)
+                .reset(keep_hits);
+        }
+    }
+
+    /// Samples that every pixel has.
+    #[must_use]
+    pub fn samples(&self) -> u32 {
+        let samples = self.tiles.iter().map(|tile| lock(tile).samples);
+        samples.min().unwrap_or(0)
+    }
+
+    /// Exact counts since the last reset.
+    #[must_use]
+    pub fn counters(&self) -> Counters {
+        let mut sum = Counters::ZERO;
+        for tile in &self.tiles {
+            sum += lock(tile).counters;
+        }
+        sum
+    }
+
+    /// Fills `out`, one entry for each pixel of the film in rows, with what `f` makes of the means of their
+    /// samples; black where there are none. Runs on the current pool.
+    pub fn map_into<T: Copy + Send>(&self, out: &mut [T], f: &(impl Fn(LinearRgb) -> T + Sync)) {
+        let width = self.size[0] as usize;
+        let bands = out.par_chunks_mut(width * TILE_SIZE as usize);
+        let tiles = self.tiles.par_chunks(width.div_ceil(TILE_SIZE as usize));
+        bands.zip(tiles).for_each(|(rows, tiles)| {
+            for tile in tiles {
+                lock(tile).write_rows(rows, width, f);
+            }
+        });
+    }
+}
+
+/// A tile, for its worker. Two never want the same at once.
+pub fn lock(tile: &Mutex<Tile>) -> MutexGuard<'_, Tile> {
+    // A panic in a worker leaves at worst a tile with a wrong colour, which the next start resets.
+    tile.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn centre_first(tiles: &[Tile], [width, height]: [u32; 2]) -> Vec<usize> {
+    let distance = |tile: &Tile| {
+        let [x0, y0] = tile.pixels.corner;
+        let dx = i64::from(2 * x0 + tile.size[0]) - i64::from(width);
+        let dy = i64::from(2 * y0 + tile.size[1]) - i64::from(height);
         dx * dx + dy * dy
     };
     let mut order: Vec<usize> = (0..tiles.len()).collect();
@@ -60,39 +135,29 @@ pub fn centre_first(tiles: &[Tile], [width, height]: [u32; 2]) -> Vec<usize> {
 }
 
 impl Tile {
-    /// Writes `f` of every pixel into `rows`, a band of picture rows `width` wide that starts at the tile's
-    /// first row: the mean of its samples, or before the first full sample the nearest pixel of the preview.
-    pub(super) fn write_rows<T: Copy>(
-        &self,
-        rows: &mut [T],
-        width: usize,
-        f: &impl Fn(LinearRgb) -> T,
-    ) {
-        let row = |y: u32| y as usize * width + self.x0 as usize;
-        if self.samples > 0 {
-            let share = 1.0 / self.samples as f32;
-            for y in 0..self.height {
-                let pixels = &mut rows[row(y)..];
-                for (x, pixel) in (0..self.width).zip(pixels) {
-                    *pixel = f(self.sum(x, y) * share);
-                }
-            }
-            return;
-        }
-        let Some(stride) = self.first_stride else {
-            let black = f(LinearRgb::BLACK);
-            (0..self.height).for_each(|y| rows[row(y)..][..self.width as usize].fill(black));
-            return;
+    /// Writes `f` of every pixel's mean into `rows`, a band of rows `width` wide that starts at the tile's first row.
+    fn write_rows<T: Copy>(&self, rows: &mut [T], width: usize, f: &impl Fn(LinearRgb) -> T) {
+        let [columns, height] = self.size;
+        let share = if self.samples == 0 {
+            0.0
+        } else {
+            1.0 / self.samples as f32
         };
-        // Tiles start at multiples of every stride that divides their size, so every pixel's stand-in, to
-        // its upper left on the preview's grid, is inside the tile.
-        for y in (0..self.height).step_by(stride as usize) {
-            let pixels = &mut rows[row(y)..][..self.width as usize];
-            for (cell, pixels) in pixels.chunks_mut(stride as usize).enumerate() {
-                pixels.fill(f(self.sum(cell as u32 * stride, y)));
-            }
-            for copy in y + 1..(y + stride).min(self.height) {
-                rows.copy_within(row(y)..row(y) + self.width as usize, row(copy));
+        let [r, g, b] = &*self.sums;
+        for y in 0..height {
+            let start = y as usize * width + self.pixels.corner[0] as usize;
+            let row = &mut rows[start..start + columns as usize];
+            // Neighbours in a block are neighbours in the arrays.
+            for (block, pixels) in (0..).zip(row.chunks_mut(BLOCK_SIZE as usize)) {
+                let first = place_of(block * BLOCK_SIZE, y);
+                for (place, pixel) in (first..).zip(pixels) {
+                    let sum = LinearRgb::new(r.0[place], g.0[place], b.0[place]);
+                    *pixel = if self.samples == 0 {
+                        f(LinearRgb::BLACK)
+                    } else {
+                        f(sum * share)
+                    };
+                }
             }
         }
     }

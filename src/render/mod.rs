@@ -18,7 +18,7 @@ pub use film::Picture;
 pub use frame::Frame;
 pub use material::amplitude;
 pub use probe::{BounceStory, HitStory, LightStory, PixelStory, Visibility, probe};
-pub use progressive::{PassEnd, Progressive, Snapshot};
+pub use progressive::{PassEnd, Progressive, Shown, Snapshot};
 pub use ray_jobs::rays_of;
 pub use ray_list::{RayKind, RayList, RayQuery};
 pub use sampling::pixel_sample;

@@ -5,8 +5,10 @@ use std::fmt;
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 
-use super::sites::Sites;
-use super::stages::{self, Column3, Places, Scratch, Surfaces, camera, light, surface, trace};
+use super::stages::camera::Pixels;
+use super::stages::{
+    self, Column, Column3, Places, Scratch, Surfaces, camera, light, surface, trace,
+};
 use super::{Counters, Frame, Snapshot};
 use crate::geometry::triangle::Watertight;
 use crate::geometry::{Hit, Ray, offset_by_bound};
@@ -138,8 +140,13 @@ pub fn probe(snapshot: &Snapshot, pixel: [u32; 2]) -> Option<PixelStory> {
     let Scratch { mut hits, mut work } = Scratch::default();
     let mut active = Places::EMPTY;
     active.insert(0);
-    let sites = Sites::all();
-    camera::camera_rays(&frame, sites, pixel, (active, 0), &mut work.rays);
+    let pixels = Pixels {
+        corner: pixel,
+        stride: 1,
+        active,
+    };
+    camera::camera_rays(&frame, &pixels, 0, &mut work.rays);
+    work.radiance = [Column::splat(0.0); 3];
     work.rays.count = 1;
     let mut bounces = Vec::new();
     for index in 0..=frame.max_bounces {

@@ -3,11 +3,8 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use rayon::prelude::*;
-
-use super::film::{Picture, centre_first, tiles_of};
+use super::film::{Film, Picture, lock};
 use super::stages::Scratch;
-use super::tile::{TILE_SIZE, Tile};
 use super::{Counters, Frame};
 use crate::math::{LinearRgb, SrgbEncoder};
 use crate::scene::{RenderSettings, Scene};
@@ -34,22 +31,33 @@ pub enum PassEnd {
     Stopped,
 }
 
+/// What a renderer has to show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shown {
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// 1 for the picture itself; otherwise a preview of every `stride`-th pixel in both directions.
+    pub stride: u32,
+}
+
 /// Renders a snapshot in passes on a worker pool of its own.
 ///
 /// Pass `k` is a pure function of the snapshot and `k`: preview history, thread count and stopping leave
-/// no trace in the finished picture.
+/// no trace in the finished picture. Previews are pictures of their own, from the same rays as every
+/// `stride`-th pixel's first sample.
 #[derive(Debug)]
 pub struct Progressive {
     pool: rayon::ThreadPool,
     snapshot: Option<Snapshot>,
-    tiles: Vec<Mutex<Tile>>,
-    order: Vec<usize>,
+    film: Film,
+    /// One for each stride but 1, made when first wanted.
+    previews: [Option<Film>; 3],
     scratch: Vec<Mutex<Scratch>>,
     reuses_hits: bool,
 }
 
 impl Progressive {
-    /// The preview strides that [`preview`](Self::preview) takes: divisors of a tile's side.
+    /// The preview strides that [`preview`](Self::preview) takes.
     pub const PREVIEW_STRIDES: [u32; 4] = [1, 2, 4, 8];
 
     /// A renderer with its own pool; 0 threads means one per core.
@@ -68,8 +76,8 @@ impl Progressive {
         Ok(Self {
             pool,
             snapshot: None,
-            tiles: Vec::new(),
-            order: Vec::new(),
+            film: Film::new([0; 2], 1),
+            previews: [const { None }; 3],
             scratch,
             reuses_hits: false,
         })
@@ -84,79 +92,52 @@ impl Progressive {
         };
         let last = self.snapshot.as_ref();
         self.reuses_hits = last.is_some_and(|last| same_visibility(last, &snapshot));
-        if last.is_none_or(|last| last.size != snapshot.size) {
-            let tiles = tiles_of(snapshot.size);
-            self.order = centre_first(&tiles, snapshot.size);
-            self.tiles = tiles.into_iter().map(Mutex::new).collect();
+        if self.film.size == snapshot.size {
+            self.film.reset(self.reuses_hits);
+            for preview in self.previews.iter_mut().flatten() {
+                preview.reset(self.reuses_hits);
+            }
         } else {
-            let keep = self.reuses_hits;
-            self.pool.install(|| {
-                self.tiles
-                    .par_iter_mut()
-                    .for_each(|t| tile_mut(t).reset(keep))
-            });
+            self.film = Film::new(snapshot.size, 1);
+            self.previews = [const { None }; 3];
         }
         self.snapshot = Some(snapshot);
     }
 
     /// Renders the first sample of every `stride`-th pixel in both directions (`stride` is one of
-    /// [`PREVIEW_STRIDES`](Self::PREVIEW_STRIDES), others are rounded up to one). These pixels are those
-    /// of the full pass, and their hits are kept for it. `stop` is polled before each tile.
+    /// [`PREVIEW_STRIDES`](Self::PREVIEW_STRIDES), others are rounded up to one; 1 is the first pass). Does
+    /// nothing if there is something as fine. `stop` is polled before each tile.
     pub fn preview(&mut self, stride: u32, stop: &(dyn Fn() -> bool + Sync)) -> PassEnd {
         let largest = Self::PREVIEW_STRIDES[Self::PREVIEW_STRIDES.len() - 1];
         let stride = stride.clamp(1, largest).next_power_of_two();
-        let wants = |tile: &Tile| tile.wants_preview(stride);
-        self.for_each_tile(stop, &wants, &|tile, frame, scratch| {
-            tile.preview(frame, stride, scratch)
-        })
+        if self.snapshot.is_none() || self.finest().is_some_and(|film| film.stride <= stride) {
+            return PassEnd::Complete;
+        }
+        let index = stride.trailing_zeros() as usize;
+        let film = match index.checked_sub(1) {
+            None => &self.film,
+            Some(i) => {
+                let size = self.film.size;
+                self.previews[i].get_or_insert_with(|| Film::new(size, stride))
+            }
+        };
+        render(
+            &self.pool,
+            &self.scratch,
+            (self.snapshot.as_ref(), film),
+            1,
+            stop,
+        )
     }
 
     /// Renders the next sample of every pixel; `stop` is polled before each tile. Does nothing once the
     /// picture has converged.
     pub fn pass(&mut self, stop: &(dyn Fn() -> bool + Sync)) -> PassEnd {
-        let Some(snapshot) = &self.snapshot else {
-            return PassEnd::Complete;
-        };
-        let goal = (self.samples() + 1).min(snapshot.settings.samples.max(1));
+        let wanted = self.snapshot.as_ref().map_or(0, samples_wanted);
         // Tiles that a stopped pass had done already are ahead.
-        self.for_each_tile(stop, &|tile| tile.samples < goal, &Tile::sample)
-    }
-
-    /// Runs `work` on all tiles that want it. `stop` is asked only before tiles that do, so that passes
-    /// stopped again and again still come to an end.
-    fn for_each_tile(
-        &self,
-        stop: &(dyn Fn() -> bool + Sync),
-        wants: &(dyn Fn(&Tile) -> bool + Sync),
-        work: &(dyn Fn(&mut Tile, &Frame<'_>, &mut Scratch) + Sync),
-    ) -> PassEnd {
-        let Some(snapshot) = &self.snapshot else {
-            return PassEnd::Complete;
-        };
-        let frame = Frame::new(snapshot);
-        let next = AtomicUsize::new(0);
-        let done = AtomicUsize::new(0);
-        self.pool.broadcast(|context| {
-            // One worker per slot and one slot per worker: these locks are never waited for.
-            let mut scratch = self.scratch[context.index()]
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner);
-            while let Some(&i) = self.order.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let mut tile = lock(&self.tiles[i]);
-                if wants(&tile) {
-                    if stop() {
-                        break;
-                    }
-                    work(&mut tile, &frame, &mut scratch);
-                }
-                done.fetch_add(1, Ordering::Relaxed);
-            }
-        });
-        if done.into_inner() == self.order.len() {
-            PassEnd::Complete
-        } else {
-            PassEnd::Stopped
-        }
+        let goal = (self.samples() + 1).min(wanted);
+        let job = (self.snapshot.as_ref(), &self.film);
+        render(&self.pool, &self.scratch, job, goal, stop)
     }
 
     /// The snapshot being rendered.
@@ -168,30 +149,24 @@ impl Progressive {
     /// Samples that every pixel has.
     #[must_use]
     pub fn samples(&self) -> u32 {
-        self.tiles
-            .iter()
-            .map(|t| lock(t).samples)
-            .min()
-            .unwrap_or(0)
+        self.film.samples()
     }
 
     /// Whether every pixel has all its samples.
     #[must_use]
     pub fn is_converged(&self) -> bool {
-        self.snapshot
-            .as_ref()
-            .is_none_or(|s| self.samples() >= s.settings.samples.max(1))
+        let wanted = self.snapshot.as_ref().map_or(0, samples_wanted);
+        self.samples() >= wanted
     }
 
-    /// Exact counts since [`start`](Self::start).
+    /// Exact counts since [`start`](Self::start), previews included.
     #[must_use]
     pub fn counters(&self) -> Counters {
-        self.tiles
-            .iter()
-            .fold(Counters::default(), |mut sum, tile| {
-                sum += lock(tile).counters;
-                sum
-            })
+        let mut sum = self.film.counters();
+        for preview in self.previews.iter().flatten() {
+            sum += preview.counters();
+        }
+        sum
     }
 
     /// Whether hits of the snapshot before this one serve again, so that camera rays are saved.
@@ -206,58 +181,132 @@ impl Progressive {
         self.pool.current_num_threads()
     }
 
-    /// The linear picture so far, without exposure.
+    /// What there is to show: the picture once every pixel has a sample, before that the finest preview.
+    #[must_use]
+    pub fn shown(&self) -> Shown {
+        let film = self.finest().unwrap_or(&self.film);
+        Shown {
+            size: film.size,
+            stride: film.stride,
+        }
+    }
+
+    /// The finest film in which every pixel has a sample.
+    fn finest(&self) -> Option<&Film> {
+        let films = std::iter::once(&self.film).chain(self.previews.iter().flatten());
+        films.into_iter().find(|film| film.samples() > 0)
+    }
+
+    /// The linear picture so far, without exposure; pixels of a preview stand for their neighbours.
     #[must_use]
     pub fn picture(&self) -> Picture {
-        let Some(snapshot) = &self.snapshot else {
-            return Picture::default();
-        };
-        let mut picture = Picture::black(snapshot.size);
-        self.for_each_row(&mut picture.pixels, |color| color);
+        let mut picture = Picture::black(self.film.size);
+        self.map_shown(&mut picture.pixels, |color| color);
         picture
     }
 
-    /// Encodes the picture so far for the screen: opaque RGBA, row by row. After only a preview its
-    /// pixels stand for their neighbours. Linear values are multiplied by `2^exposure_ev` first.
+    /// Encodes the picture so far for the screen: opaque RGBA, row by row; pixels of a preview stand for
+    /// their neighbours. Linear values are multiplied by `2^exposure_ev` first.
     ///
     /// # Panics
     /// If `rgba` does not have one entry per pixel.
     pub fn encode_into(&self, exposure_ev: f32, rgba: &mut [[u8; 4]]) {
-        let factor = exposure_ev.exp2();
-        let encoder = SrgbEncoder::get();
-        self.for_each_row(rgba, |color| {
-            let [r, g, b] = encoder.encode(color * factor);
-            [r, g, b, 255]
-        });
+        self.map_shown(rgba, encode(exposure_ev));
     }
 
-    /// Fills `out` row by row with what `f` makes of every pixel.
-    fn for_each_row<T: Copy + Send>(&self, out: &mut [T], f: impl Fn(LinearRgb) -> T + Sync) {
-        let Some(snapshot) = &self.snapshot else {
+    /// [`encode_into`](Self::encode_into) for what is [`shown`](Self::shown), at its own size.
+    ///
+    /// # Panics
+    /// If `rgba` does not have one entry per pixel of it.
+    pub fn encode_shown_into(&self, exposure_ev: f32, rgba: &mut [[u8; 4]]) {
+        let film = self.finest().unwrap_or(&self.film);
+        self.map_film(film, rgba, encode(exposure_ev));
+    }
+
+    /// Fills `out`, one entry for each pixel of the picture.
+    fn map_shown<T: Copy + Send>(&self, out: &mut [T], f: impl Fn(LinearRgb) -> T + Sync) {
+        let film = self.finest().unwrap_or(&self.film);
+        if film.stride == 1 {
+            self.map_film(film, out, f);
             return;
-        };
-        let [width, height] = snapshot.size.map(|n| n as usize);
+        }
+        let [width, height] = self.film.size.map(|n| n as usize);
         assert_eq!(out.len(), width * height, "one entry per pixel");
-        let columns = width.div_ceil(TILE_SIZE as usize);
-        let band = width * TILE_SIZE as usize;
-        self.pool.install(|| {
-            let bands = out.par_chunks_mut(band).zip(self.tiles.par_chunks(columns));
-            bands.for_each(|(rows, tiles)| {
-                tiles
-                    .iter()
-                    .for_each(|t| lock(t).write_rows(rows, width, &f))
-            });
-        });
+        let (stride, columns) = (film.stride as usize, film.size[0] as usize);
+        let mut coarse = vec![f(LinearRgb::BLACK); columns * film.size[1] as usize];
+        self.map_film(film, &mut coarse, f);
+        for (y, row) in out.chunks_exact_mut(width).enumerate() {
+            let coarse = &coarse[y / stride * columns..];
+            for (pixels, &value) in row.chunks_mut(stride).zip(coarse) {
+                pixels.fill(value);
+            }
+        }
+    }
+
+    fn map_film<T: Copy + Send>(
+        &self,
+        film: &Film,
+        out: &mut [T],
+        f: impl Fn(LinearRgb) -> T + Sync,
+    ) {
+        let [width, height] = film.size.map(|n| n as usize);
+        assert_eq!(out.len(), width * height, "one entry per pixel");
+        if !out.is_empty() {
+            self.pool.install(|| film.map_into(out, &f));
+        }
     }
 }
 
-fn lock(tile: &Mutex<Tile>) -> std::sync::MutexGuard<'_, Tile> {
-    // A panic in a worker leaves at worst a tile with a wrong colour, which the next start resets.
-    tile.lock().unwrap_or_else(PoisonError::into_inner)
+/// From linear light to what a screen takes.
+fn encode(exposure_ev: f32) -> impl Fn(LinearRgb) -> [u8; 4] + Sync {
+    let factor = exposure_ev.exp2();
+    let encoder = SrgbEncoder::get();
+    move |color| {
+        let [r, g, b] = encoder.encode(color * factor);
+        [r, g, b, 255]
+    }
 }
 
-fn tile_mut(tile: &mut Mutex<Tile>) -> &mut Tile {
-    tile.get_mut().unwrap_or_else(PoisonError::into_inner)
+fn samples_wanted(snapshot: &Snapshot) -> u32 {
+    snapshot.settings.samples.max(1)
+}
+
+/// Brings all tiles of a film to `goal` samples. `stop` is asked only before tiles that need one, so that
+/// passes stopped again and again still come to an end.
+fn render(
+    pool: &rayon::ThreadPool,
+    scratch: &[Mutex<Scratch>],
+    (snapshot, film): (Option<&Snapshot>, &Film),
+    goal: u32,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> PassEnd {
+    let Some(snapshot) = snapshot else {
+        return PassEnd::Complete;
+    };
+    let frame = Frame::new(snapshot);
+    let next = AtomicUsize::new(0);
+    let done = AtomicUsize::new(0);
+    pool.broadcast(|context| {
+        // One worker per slot and one slot per worker: these locks are never waited for.
+        let mut scratch = scratch[context.index()]
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        while let Some(&i) = film.order.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let mut tile = lock(&film.tiles[i]);
+            if tile.samples < goal {
+                if stop() {
+                    break;
+                }
+                tile.sample(&frame, &mut scratch);
+            }
+            done.fetch_add(1, Ordering::Relaxed);
+        }
+    });
+    if done.into_inner() == film.order.len() {
+        PassEnd::Complete
+    } else {
+        PassEnd::Stopped
+    }
 }
 
 /// Whether every camera ray of `a` hits the same in `b`.

@@ -3,10 +3,9 @@
 //! The very stages that render tiles make them. As many rays of each kind are active as
 //! [`Counters`] counts.
 
-use super::film::{centre_first, tiles_of};
+use super::film::{Film, lock};
 use super::frame::{FrameLight, FrameLightKind};
 use super::ray_list::{RayKind, RayList};
-use super::sites::Sites;
 use super::stages::{PLACES, Places, Scratch, bounce, camera, light, mirrors_at, surface, trace};
 use super::{Counters, Frame, Snapshot};
 use crate::geometry::RayLanes;
@@ -18,14 +17,13 @@ use crate::geometry::RayLanes;
 #[must_use]
 pub fn rays_of(snapshot: &Snapshot, kind: RayKind) -> RayList {
     let frame = Frame::new(snapshot);
-    let tiles = tiles_of(snapshot.size);
+    let film = Film::new(snapshot.size, 1);
     let (mut list, mut scratch) = (RayList::default(), Scratch::default());
-    for index in centre_first(&tiles, snapshot.size) {
-        let tile = &tiles[index];
-        let (corner, sample) = ([tile.x0, tile.y0], (tile.inside, 0));
-        camera::camera_rays(&frame, Sites::all(), corner, sample, &mut scratch.work.rays);
+    for &index in &film.order {
+        let pixels = lock(&film.tiles[index]).pixels;
+        camera::camera_rays(&frame, &pixels, 0, &mut scratch.work.rays);
         let mut add = |rays: &RayLanes<PLACES>, active: Places| {
-            for place in tile.inside.iter() {
+            for place in pixels.active.iter() {
                 let ray = active.contains(place).then(|| rays.ray(place));
                 list.push(ray.map(|ray| (ray, rays.t_max.0[place])));
             }

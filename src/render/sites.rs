@@ -1,4 +1,4 @@
-//! Which pixels of a tile a pass renders, and in which places.
+//! Which pixel of a tile lies in which place of its arrays.
 
 use std::sync::LazyLock;
 
@@ -7,63 +7,45 @@ use super::tile::TILE_SIZE;
 use crate::math::lanes::Lanes;
 
 /// Side of the blocks that pixels are listed in, so that 64 places in a row are neighbours.
-const BLOCK_SIZE: u32 = 8;
+pub const BLOCK_SIZE: u32 = 8;
 
-/// The pixels whose column and row in the tile are multiples of a stride, block by block.
+/// Column and row in the tile of every place, block by block.
 #[derive(Debug)]
 pub struct Sites {
-    /// How many.
-    pub count: usize,
-    /// Column in the tile of each.
+    /// Columns.
     pub column: Lanes<u32, PLACES>,
-    /// Row in the tile of each.
+    /// Rows.
     pub row: Lanes<u32, PLACES>,
-    /// The place that each has in a full pass, and so in the film.
-    pub film_place: Lanes<u32, PLACES>,
 }
 
-static SITES: LazyLock<[Sites; 4]> = LazyLock::new(|| [1, 2, 4, 8].map(Sites::new));
+static SITES: LazyLock<Sites> = LazyLock::new(Sites::new);
 
 impl Sites {
-    /// The pixels of a pass with this stride, which is 1, 2, 4 or 8.
+    /// The one table.
     #[must_use]
-    pub fn of_stride(stride: u32) -> &'static Self {
-        &SITES[stride.trailing_zeros() as usize % SITES.len()]
+    pub fn get() -> &'static Self {
+        &SITES
     }
 
-    /// The pixels of a full pass: their places are those of the film.
-    #[must_use]
-    pub fn all() -> &'static Self {
-        Self::of_stride(1)
-    }
-
-    fn new(stride: u32) -> Self {
-        let zeros = Lanes::splat(0);
+    fn new() -> Self {
         let mut sites = Self {
-            count: 0,
-            column: zeros,
-            row: zeros,
-            film_place: zeros,
+            column: Lanes::splat(0),
+            row: Lanes::splat(0),
         };
-        let block = BLOCK_SIZE * stride;
-        let starts = || (0..TILE_SIZE).step_by(block as usize);
-        for (y0, x0) in starts().flat_map(|y| starts().map(move |x| (y, x))) {
-            let line = |from: u32| (from..TILE_SIZE.min(from + block)).step_by(stride as usize);
-            for (y, x) in line(y0).flat_map(|y| line(x0).map(move |x| (y, x))) {
-                sites.column.0[sites.count] = x;
-                sites.row.0[sites.count] = y;
-                sites.film_place.0[sites.count] = film_place(x, y);
-                sites.count += 1;
-            }
+        for (y, x) in (0..TILE_SIZE).flat_map(|y| (0..TILE_SIZE).map(move |x| (y, x))) {
+            let place = place_of(x, y);
+            sites.column.0[place] = x;
+            sites.row.0[place] = y;
         }
         sites
     }
 
-    /// The places whose pixels `wanted` accepts by column and row in the tile.
-    pub fn places(&self, wanted: impl Fn(u32, u32) -> bool) -> Places {
+    /// The places of the pixels in the upper left `width` × `height` of a tile.
+    #[must_use]
+    pub fn within(&self, width: u32, height: u32) -> Places {
         let mut places = Places::EMPTY;
-        for place in 0..self.count {
-            if wanted(self.column.0[place], self.row.0[place]) {
+        for place in 0..PLACES {
+            if self.column.0[place] < width && self.row.0[place] < height {
                 places.insert(place);
             }
         }
@@ -71,12 +53,12 @@ impl Sites {
     }
 }
 
-/// Place in the film of the pixel in column `x` and row `y` of a tile.
+/// Place of the pixel in column `x` and row `y` of a tile.
 #[must_use]
-pub const fn film_place(x: u32, y: u32) -> u32 {
+pub const fn place_of(x: u32, y: u32) -> usize {
     let blocks = TILE_SIZE / BLOCK_SIZE;
     let block = y / BLOCK_SIZE * blocks + x / BLOCK_SIZE;
-    (block * BLOCK_SIZE + y % BLOCK_SIZE) * BLOCK_SIZE + x % BLOCK_SIZE
+    ((block * BLOCK_SIZE + y % BLOCK_SIZE) * BLOCK_SIZE + x % BLOCK_SIZE) as usize
 }
 
 #[cfg(test)]
@@ -84,21 +66,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_pixel_has_one_place_and_coarse_sites_are_among_the_fine() {
-        let all = Sites::all();
-        assert_eq!(all.count, PLACES);
+    fn every_pixel_has_a_place_of_its_own() {
+        let sites = Sites::get();
         for place in 0..PLACES {
-            assert_eq!(all.film_place.0[place] as usize, place);
+            assert_eq!(place_of(sites.column.0[place], sites.row.0[place]), place);
         }
-        for stride in [2, 4, 8] {
-            let sites = Sites::of_stride(stride);
-            assert_eq!(sites.count, PLACES / (stride * stride) as usize);
-            for i in 0..sites.count {
-                let place = sites.film_place.0[i] as usize;
-                assert_eq!(all.column.0[place], sites.column.0[i]);
-                assert_eq!(all.row.0[place], sites.row.0[i]);
-                assert!(sites.column.0[i] % stride == 0 && sites.row.0[i] % stride == 0);
-            }
-        }
+        assert_eq!(sites.within(TILE_SIZE, TILE_SIZE).count(), PLACES as u64);
+        assert_eq!(sites.within(5, 17).count(), 5 * 17);
     }
 }

@@ -76,10 +76,24 @@ impl Framebuffer {
     /// Paints the last frame over the rectangle, stretched while the next size is on its way.
     pub fn paint(&self, ui: &Ui, rect: Rect) {
         if let Some(texture) = &self.texture {
-            let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             let painter = ui.painter();
-            painter.image(texture.id(), rect, uv, egui::Color32::WHITE);
+            painter.image(texture.id(), rect, self.uv(), egui::Color32::WHITE);
         }
+    }
+
+    /// What part of the texture covers the rectangle. A texel of a preview belongs on the first pixel of the
+    /// `stride` pixels that it stands for, so that nothing jumps when the whole picture follows.
+    fn uv(&self) -> Rect {
+        let Some(image) = &self.shown else {
+            return Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        };
+        let stride = self.stats.stride.max(1) as f32;
+        let place = |pixel: u32, texels: usize| {
+            ((pixel as f32 - 0.5) / stride + 0.5) / texels.max(1) as f32
+        };
+        let ([w, h], [columns, rows]) = (self.stats.size, image.size);
+        let corner = |x: u32, y: u32| pos2(place(x, columns), place(y, rows));
+        Rect::from_min_max(corner(0, 0), corner(w, h))
     }
 }
 

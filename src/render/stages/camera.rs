@@ -3,25 +3,32 @@
 use super::super::Frame;
 use super::super::sampling::pixel_sample;
 use super::super::sites::Sites;
-use super::{Column, Places, Rays, groups};
-use crate::math::Bits as _;
+use super::{Column, PLACES, Places, Rays, groups};
 use crate::math::simd::{Kernel, Simd};
 use crate::math::wide::Wide;
+use crate::math::{Bits as _, Real as _};
 
-/// Sets the rays of sample `index` of all pixels in `active`. The tile's upper left pixel is `corner`.
-pub fn camera_rays(
-    frame: &Frame<'_>,
-    sites: &Sites,
-    corner: [u32; 2],
-    (active, index): (Places, u32),
-    rays: &mut Rays,
-) {
-    rays.count = sites.count;
-    rays.active = active;
+/// The pixels that a tile's rays go through.
+#[derive(Debug, Clone, Copy)]
+pub struct Pixels {
+    /// The tile's upper left pixel, in the film.
+    pub corner: [u32; 2],
+    /// Pixels of the picture from one of the film's to the next.
+    pub stride: u32,
+    /// Places with a pixel.
+    pub active: Places,
+}
+
+/// Sets the rays of sample `index` of the pixels.
+pub fn camera_rays(frame: &Frame<'_>, pixels: &Pixels, index: u32, rays: &mut Rays) {
+    rays.count = PLACES;
+    rays.active = pixels.active;
+    rays.weight = Column::splat(1.0);
+    let [x, y, z] = frame.camera.origin.to_array();
+    rays.lanes.origin = [Column::splat(x), Column::splat(y), Column::splat(z)];
     frame.level.run_or_plain(CameraRays {
         frame,
-        sites,
-        corner,
+        pixels,
         index,
         rays,
     });
@@ -29,8 +36,7 @@ pub fn camera_rays(
 
 struct CameraRays<'a> {
     frame: &'a Frame<'a>,
-    sites: &'a Sites,
-    corner: [u32; 2],
+    pixels: &'a Pixels,
     index: u32,
     rays: &'a mut Rays,
 }
@@ -38,24 +44,19 @@ struct CameraRays<'a> {
 impl Kernel for CameraRays<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let (camera, rays) = (&self.frame.camera, self.rays);
-        let one = Wide::new(simd, 1.0);
-        let origin = camera.origin.to_array();
-        rays.weight = Column::splat(1.0);
+        let (sites, rays) = (Sites::get(), self.rays);
+        let Pixels { corner, stride, .. } = *self.pixels;
+        let far = Wide::new(simd, f32::INFINITY);
         for group in 0..groups::<S>(rays.count) {
-            let x = self.sites.column.get(simd, group).plus(self.corner[0]);
-            let y = self.sites.row.get(simd, group).plus(self.corner[1]);
+            let x = sites.column.get(simd, group).plus(corner[0]).times(stride);
+            let y = sites.row.get(simd, group).plus(corner[1]).times(stride);
             let [sx, sy] = pixel_sample([x, y], self.index);
-            let dir = camera.direction(x.signed_to_real() + sx, y.signed_to_real() + sy);
-            for axis in 0..3 {
-                rays.lanes.origin[axis].set(group, Wide::new(simd, origin[axis]));
-            }
+            let (x, y) = (x.signed_to_real() + sx, y.signed_to_real() + sy);
+            let dir = self.frame.camera.direction(x, y);
             rays.lanes.dir[0].set(group, dir.x);
             rays.lanes.dir[1].set(group, dir.y);
             rays.lanes.dir[2].set(group, dir.z);
-            let active = rays.active.mask(simd, group);
-            let far = one * f32::INFINITY;
-            let t_max = crate::math::Real::select(active, far, -one);
+            let t_max = Wide::select(rays.active.mask(simd, group), far, -far);
             rays.lanes.t_max.set(group, t_max);
         }
     }

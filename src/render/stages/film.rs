@@ -1,74 +1,56 @@
 //! Samples → the sums of the film.
 
 use super::super::Frame;
-use super::{Column3, Places, get_rgb, groups, set_rgb};
+use super::{Column3, PLACES, Places, get_rgb, groups};
 use crate::math::simd::{Kernel, Simd};
 use crate::math::wide::Wide;
 use crate::math::{LinearRgb, Real as _};
 
-/// Makes samples black that are not finite; returns the places of the others among `active`.
-pub fn drop_non_finite(
+/// Adds the samples in `active` to the sums; the first one replaces what they held. One that is not finite
+/// counts as black; returns how many are.
+pub fn add(
     frame: &Frame<'_>,
-    count: usize,
-    active: Places,
-    radiance: &mut Column3,
-) -> Places {
+    active: &Places,
+    first: bool,
+    radiance: &Column3,
+    sums: &mut Column3,
+) -> u64 {
     let mut finite = Places::EMPTY;
-    frame.level.run_or_plain(DropNonFinite {
-        count,
-        radiance,
-        finite: &mut finite,
-    });
-    finite & active
-}
-
-struct DropNonFinite<'a> {
-    count: usize,
-    radiance: &'a mut Column3,
-    finite: &'a mut Places,
-}
-
-impl Kernel for DropNonFinite<'_> {
-    #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        let black = LinearRgb::splat(Wide::new(simd, 0.0), LinearRgb::BLACK);
-        for group in 0..groups::<S>(self.count) {
-            let LinearRgb { r, g, b } = get_rgb(simd, self.radiance, group);
-            let finite = r.is_finite() & g.is_finite() & b.is_finite();
-            set_rgb(self.radiance, group, !finite, black);
-            self.finite.add(group, finite);
-        }
-    }
-}
-
-/// Adds the samples of a full pass to the sums; the first one replaces what they held.
-pub fn add(frame: &Frame<'_>, active: Places, first: bool, radiance: &Column3, sums: &mut Column3) {
     frame.level.run_or_plain(Add {
-        active,
         first,
         radiance,
         sums,
+        finite: &mut finite,
     });
+    (*active & !finite).count()
 }
 
 struct Add<'a> {
-    active: Places,
     first: bool,
     radiance: &'a Column3,
     sums: &'a mut Column3,
+    finite: &'a mut Places,
 }
 
 impl Kernel for Add<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        for group in 0..groups::<S>(super::PLACES) {
+        let black = LinearRgb::splat(Wide::new(simd, 0.0), LinearRgb::BLACK);
+        for group in 0..groups::<S>(PLACES) {
             let sample = get_rgb(simd, self.radiance, group);
+            let LinearRgb { r, g, b } = sample;
+            let finite = r.is_finite() & g.is_finite() & b.is_finite();
+            self.finite.add(group, finite);
+            let sample = LinearRgb::select(finite, sample, black);
             let sum = if self.first {
                 sample
             } else {
                 get_rgb(simd, self.sums, group) + sample
             };
-            set_rgb(self.sums, group, self.active.mask(simd, group), sum);
+            let [red, green, blue] = &mut *self.sums;
+            red.set(group, sum.r);
+            green.set(group, sum.g);
+            blue.set(group, sum.b);
         }
     }
 }

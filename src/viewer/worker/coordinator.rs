@@ -64,7 +64,6 @@ pub(super) struct Coordinator {
     factory: RendererFactory,
     renderer: Option<(usize, Box<dyn PassRenderer>)>,
     job: Option<Job>,
-    bytes: Vec<[u8; 4]>,
     /// Expected cost of a first pass; `None` before anything was measured in this scene.
     nanos_per_pixel: Option<f32>,
     /// Stride of the last first pass.
@@ -82,7 +81,6 @@ impl Coordinator {
             factory,
             renderer: None,
             job: None,
-            bytes: Vec::new(),
             nanos_per_pixel: None,
             stride: COARSEST,
             passes: 0,
@@ -315,9 +313,11 @@ impl Coordinator {
             return;
         };
         let Snapshot { settings, size, .. } = &job.request.snapshot;
+        let shown = renderer.shown();
         let stats = FrameStats {
             generation: job.generation,
-            stride: job.stride,
+            size: *size,
+            stride: shown.stride,
             samples: if job.stride == 1 {
                 renderer.samples()
             } else {
@@ -332,13 +332,11 @@ impl Coordinator {
             passes: self.passes,
             threads: renderer.threads(),
         };
-        let size = size.map(|n| n as usize);
-        self.bytes.resize(size[0] * size[1], [0, 0, 0, 255]);
-        renderer.encode_into(job.request.exposure_ev, &mut self.bytes);
+        let size = shown.size.map(|n| n as usize);
         let mut pixels = lock(&self.shared.outbox).spare.pop().unwrap_or_default();
-        pixels.clear();
-        let opaque = |&[r, g, b, _]: &[u8; 4]| Color32::from_rgb(r, g, b);
-        pixels.extend(self.bytes.iter().map(opaque));
+        pixels.resize(size[0] * size[1], Color32::BLACK);
+        let bytes = bytemuck::cast_slice_mut(&mut pixels);
+        renderer.encode_shown_into(job.request.exposure_ev, bytes);
         let image = ColorImage::new(size, pixels);
         self.shown_at = Some(Instant::now());
         let replaced = {
@@ -386,7 +384,7 @@ fn write_picture(
         return write_exr(path, size, &linear);
     }
     let mut rgba = vec![[0; 4]; picture.pixels.len()];
-    renderer.encode_into(exposure_ev, &mut rgba);
+    renderer.encode_shown_into(exposure_ev, &mut rgba);
     let rgb: Vec<_> = rgba.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
     write_png(path, size, &rgb)
 }

@@ -17,7 +17,7 @@ use std::thread::JoinHandle;
 
 use egui::{Color32, ColorImage};
 
-use crate::render::{Counters, PassEnd, Picture, Progressive, Snapshot};
+use crate::render::{Counters, PassEnd, Picture, Progressive, Shown, Snapshot};
 
 /// What the worker needs from a renderer. [`Progressive`] is the one that ships.
 pub trait PassRenderer: Send {
@@ -31,8 +31,10 @@ pub trait PassRenderer: Send {
     fn samples(&self) -> u32;
     /// See [`Progressive::picture`].
     fn picture(&self) -> Picture;
-    /// See [`Progressive::encode_into`].
-    fn encode_into(&self, exposure_ev: f32, rgba: &mut [[u8; 4]]);
+    /// See [`Progressive::shown`].
+    fn shown(&self) -> Shown;
+    /// See [`Progressive::encode_shown_into`].
+    fn encode_shown_into(&self, exposure_ev: f32, rgba: &mut [[u8; 4]]);
     /// See [`Progressive::is_converged`].
     fn is_converged(&self) -> bool;
     /// See [`Progressive::counters`].
@@ -59,8 +61,11 @@ impl PassRenderer for Progressive {
     fn picture(&self) -> Picture {
         Self::picture(self)
     }
-    fn encode_into(&self, exposure_ev: f32, rgba: &mut [[u8; 4]]) {
-        Self::encode_into(self, exposure_ev, rgba);
+    fn shown(&self) -> Shown {
+        Self::shown(self)
+    }
+    fn encode_shown_into(&self, exposure_ev: f32, rgba: &mut [[u8; 4]]) {
+        Self::encode_shown_into(self, exposure_ev, rgba);
     }
     fn is_converged(&self) -> bool {
         Self::is_converged(self)
@@ -139,6 +144,8 @@ impl RenderRequest {
 pub struct FrameStats {
     /// The request it answers.
     pub generation: u64,
+    /// Columns and rows of the picture that was asked for.
+    pub size: [u32; 2],
     /// 1 for full resolution, else every `stride`-th pixel was rendered.
     pub stride: u32,
     /// Samples per pixel so far; 0 while only a preview exists.
@@ -164,7 +171,7 @@ pub struct FrameStats {
 /// A picture for the screen.
 #[derive(Debug)]
 pub struct Frame {
-    /// Opaque pixels, row 0 on top.
+    /// Opaque pixels, row 0 on top: of the picture, or of every `stride`-th pixel in both directions.
     pub image: ColorImage,
     /// What is known about it.
     pub stats: FrameStats,

@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use reliefscope::render::{Counters, PassEnd, Picture, Snapshot};
+use reliefscope::render::{Counters, PassEnd, Picture, Shown, Snapshot};
 use reliefscope::viewer::worker::{
     FirstPass, Frame, PassRenderer, Refinement, RenderNote, RenderRequest, RenderWorker,
 };
@@ -30,6 +30,7 @@ struct Fake {
     arrived: Sender<()>,
     gate: Option<Arc<Mutex<Receiver<()>>>>,
     samples: u32,
+    stride: u32,
     snapshot: Option<Snapshot>,
 }
 
@@ -65,6 +66,7 @@ impl PassRenderer for Fake {
     }
     fn preview(&mut self, stride: u32, stop: &(dyn Fn() -> bool + Sync)) -> PassEnd {
         let end = self.finish(stop);
+        self.stride = stride;
         self.note(Event::Preview(stride, end));
         end
     }
@@ -80,7 +82,13 @@ impl PassRenderer for Fake {
     fn picture(&self) -> Picture {
         Picture::black([2, 2])
     }
-    fn encode_into(&self, exposure_ev: f32, rgba: &mut [[u8; 4]]) {
+    fn shown(&self) -> Shown {
+        Shown {
+            size: self.snapshot.as_ref().map_or([1; 2], |s| s.size),
+            stride: if self.samples == 0 { self.stride } else { 1 },
+        }
+    }
+    fn encode_shown_into(&self, exposure_ev: f32, rgba: &mut [[u8; 4]]) {
         rgba.fill([exposure_ev as u8, 0, 0, 255]);
     }
     fn is_converged(&self) -> bool {
@@ -119,6 +127,7 @@ impl Bench {
                 arrived: arrived_sender.clone(),
                 gate: gate.clone(),
                 samples: 0,
+                stride: 1,
                 snapshot: None,
             }))
         };
