@@ -165,44 +165,44 @@ impl Real for f32 {
     type Bits = u32;
 
     #[inline(always)]
-    fn splat(self, x: f32) -> f32 {
+    fn splat(self, x: f32) -> Self {
         x
     }
     #[inline(always)]
-    fn sqrt(self) -> f32 {
-        f32::sqrt(self)
+    fn sqrt(self) -> Self {
+        Self::sqrt(self)
     }
     #[inline(always)]
-    fn abs(self) -> f32 {
-        f32::abs(self)
+    fn abs(self) -> Self {
+        Self::abs(self)
     }
     #[inline(always)]
-    fn copysign(self, sign: f32) -> f32 {
-        f32::copysign(self, sign)
+    fn copysign(self, sign: Self) -> Self {
+        Self::copysign(self, sign)
     }
     #[inline(always)]
-    fn floor(self) -> f32 {
-        f32::floor(self)
+    fn floor(self) -> Self {
+        Self::floor(self)
     }
     #[inline(always)]
-    fn lt(self, o: f32) -> bool {
+    fn lt(self, o: Self) -> bool {
         self < o
     }
     #[inline(always)]
-    fn le(self, o: f32) -> bool {
+    fn le(self, o: Self) -> bool {
         self <= o
     }
     #[inline(always)]
-    fn eq(self, o: f32) -> bool {
+    fn eq(self, o: Self) -> bool {
         self == o
     }
     #[inline(always)]
-    fn select(mask: bool, yes: f32, no: f32) -> f32 {
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
         if mask { yes } else { no }
     }
     #[inline(always)]
     fn to_bits(self) -> u32 {
-        f32::to_bits(self)
+        Self::to_bits(self)
     }
     #[inline(always)]
     fn to_index(self) -> u32 {
@@ -225,47 +225,47 @@ impl Bits for u32 {
     type Real = f32;
 
     #[inline(always)]
-    fn splat(self, x: u32) -> u32 {
+    fn splat(self, x: u32) -> Self {
         x
     }
     #[inline(always)]
-    fn plus(self, x: u32) -> u32 {
+    fn plus(self, x: u32) -> Self {
         self.wrapping_add(x)
     }
     #[inline(always)]
-    fn plus_each(self, o: u32) -> u32 {
+    fn plus_each(self, o: Self) -> Self {
         self.wrapping_add(o)
     }
     #[inline(always)]
-    fn times(self, x: u32) -> u32 {
+    fn times(self, x: u32) -> Self {
         self.wrapping_mul(x)
     }
     #[inline(always)]
-    fn and(self, x: u32) -> u32 {
+    fn and(self, x: u32) -> Self {
         self & x
     }
     #[inline(always)]
-    fn or(self, x: u32) -> u32 {
+    fn or(self, x: u32) -> Self {
         self | x
     }
     #[inline(always)]
-    fn xor_each(self, o: u32) -> u32 {
+    fn xor_each(self, o: Self) -> Self {
         self ^ o
     }
     #[inline(always)]
-    fn or_each(self, o: u32) -> u32 {
+    fn or_each(self, o: Self) -> Self {
         self | o
     }
     #[inline(always)]
-    fn shl(self, by: u32) -> u32 {
+    fn shl(self, by: u32) -> Self {
         self << by
     }
     #[inline(always)]
-    fn shr(self, by: u32) -> u32 {
+    fn shr(self, by: u32) -> Self {
         self >> by
     }
     #[inline(always)]
-    fn select(mask: bool, yes: u32, no: u32) -> u32 {
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
         if mask { yes } else { no }
     }
     #[inline(always)]
@@ -282,9 +282,9 @@ impl Bits for u32 {
     }
     #[inline(always)]
     fn gather<const K: usize, const N: usize>(
-        indices: [u32; K],
-        fetch: impl Fn(u32) -> [u32; N],
-    ) -> [[u32; N]; K] {
+        indices: [Self; K],
+        fetch: impl Fn(Self) -> [Self; N],
+    ) -> [[Self; N]; K] {
         indices.map(fetch)
     }
 }
