@@ -107,6 +107,9 @@ pub struct RayLanes<const N: usize> {
     pub dir: [Lanes<f32, N>; 3],
     /// Where each ray ends; a place whose number is not above 0 holds no ray.
     pub t_max: Lanes<f32, N>,
+    /// The triangle that each ray leaves, or [`NO_HIT`]. A ray from [`offset_by_bound`] cannot meet it
+    /// again; bundles that know it need not work that out.
+    pub leaving: Lanes<u32, N>,
 }
 
 /// What `N` rays side by side hit.
@@ -131,6 +134,7 @@ impl<const N: usize> RayLanes<N> {
             origin: [Lanes::splat(0.0); 3],
             dir: [Lanes::splat(0.0); 3],
             t_max: Lanes::splat(-1.0),
+            leaving: Lanes::splat(NO_HIT),
         }
     }
 

@@ -58,7 +58,7 @@ fn walk(
             light::aim_at_light(frame, light, mirrors, &work.rays, &work.surfaces, shadows);
             add(&shadows.rays, shadows.lit);
         }
-        work.rays.active = bounce::turn_to_mirror_rays(frame, &mut work.rays, &work.surfaces);
+        work.rays.active = bounce::turn_to_mirror_rays(frame, &mut work.rays, hits, &work.surfaces);
         if work.rays.active.is_empty() {
             return;
         }

@@ -14,7 +14,7 @@ use std::ops::Range;
 
 use super::slabs::{MIN_COMPONENT, PADDING};
 use super::triangle::Axis;
-use super::{Ray, RayLanes};
+use super::{NO_HIT, Ray, RayLanes};
 use crate::math::simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
 pub(super) use hull::{Boxes, Hull};
@@ -88,6 +88,8 @@ pub(super) struct Bundle {
     near_shift: [Floats; 3],
     far_shift: [Floats; 3],
     shear: [Floats; 2],
+    /// The triangle that each ray leaves, or [`NO_HIT`].
+    leaving: Lanes<u32>,
 }
 
 impl Bundle {
@@ -103,6 +105,7 @@ impl Bundle {
             near_shift: ZEROS,
             far_shift: ZEROS,
             shear: [Lanes::splat(0.0); 2],
+            leaving: Lanes::splat(NO_HIT),
         }
     }
 
@@ -110,6 +113,13 @@ impl Bundle {
     #[inline(always)]
     pub(super) const fn count(&self) -> usize {
         self.active.count_ones() as usize
+    }
+
+    /// The rays of a group that leave this triangle, as bits.
+    #[inline(always)]
+    pub(super) fn leaving<S: Simd>(&self, simd: S, group: usize, prim: u32) -> u64 {
+        let leaving = S::u32s::from_slice(simd, self.leaving.group(group, S::u32s::LEN));
+        leaving.simd_eq(S::u32s::splat(simd, prim)).to_bitmask()
     }
 
     /// Groups of native width, from that of the first active ray to that of the last.
@@ -127,6 +137,7 @@ impl Bundle {
             (ox.0[lane], oy.0[lane], oz.0[lane]) = ray.origin.into();
             (dx.0[lane], dy.0[lane], dz.0[lane]) = ray.dir.into();
         }
+        self.leaving = Lanes::splat(NO_HIT);
     }
 
     /// Takes 64 rays that lie side by side, from place `first` on.
@@ -139,6 +150,8 @@ impl Bundle {
             let dir = rays.dir[axis].group(place, width);
             self.dir[axis].0.copy_from_slice(dir);
         }
+        let leaving = rays.leaving.group(place, width);
+        self.leaving.0.copy_from_slice(leaving);
     }
 
     /// Sorts the rays by dominant axis, as [`Axis::of_largest`] does. Rays that are not of unit length,

@@ -90,7 +90,7 @@ fn visit_block<S: Simd>(
         let near = S::f32s::splat(simd, near[lane]);
         for group in rays.groups::<S>() {
             let limits = query.limits().load(simd, group);
-            let wanted = limits.simd_ge(near).to_bitmask();
+            let wanted = limits.simd_ge(near).to_bitmask() & !rays.leaving(simd, group, prim);
             if wanted == 0 {
                 continue;
             }

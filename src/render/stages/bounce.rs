@@ -2,9 +2,10 @@
 
 use super::super::Frame;
 use super::{
-    Column, Column3, Mirrors, Places, Rays, Surfaces, get_rgb, get3, groups, set, set_rgb, set3,
+    Column, Column3, Mirrors, PLACES, Places, Rays, Surfaces, get_rgb, get3, groups, set, set_rgb,
+    set3,
 };
-use crate::geometry::offset_by_bound;
+use crate::geometry::{HitLanes, offset_by_bound};
 use crate::math::Real as _;
 use crate::math::simd::{Kernel, Simd};
 use crate::math::wide::Wide;
@@ -71,10 +72,16 @@ impl Kernel for Gather<'_> {
 }
 
 /// Replaces the rays by the mirror rays of all points whose material reflects; returns their places.
-pub fn turn_to_mirror_rays(frame: &Frame<'_>, rays: &mut Rays, surfaces: &Surfaces) -> Places {
+pub fn turn_to_mirror_rays(
+    frame: &Frame<'_>,
+    rays: &mut Rays,
+    hits: &HitLanes<PLACES>,
+    surfaces: &Surfaces,
+) -> Places {
     let reflects = |material: usize| frame.materials[material].reflectivity > 0.0;
     let mut mirrored = Places::EMPTY;
     if surfaces.runs.iter().any(|run| reflects(run.material)) {
+        rays.lanes.leaving = hits.prim;
         frame.level.run_or_plain(MirrorRays {
             frame,
             rays,

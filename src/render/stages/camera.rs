@@ -4,6 +4,8 @@ use super::super::Frame;
 use super::super::sampling::pixel_sample;
 use super::super::sites::Sites;
 use super::{Column, PLACES, Places, Rays, groups};
+use crate::geometry::NO_HIT;
+use crate::math::lanes::Lanes;
 use crate::math::simd::{Kernel, Simd};
 use crate::math::wide::Wide;
 use crate::math::{Bits as _, Real as _};
@@ -24,6 +26,7 @@ pub fn camera_rays(frame: &Frame<'_>, pixels: &Pixels, index: u32, rays: &mut Ra
     rays.count = PLACES;
     rays.active = pixels.active;
     rays.weight = Column::splat(1.0);
+    rays.lanes.leaving = Lanes::splat(NO_HIT);
     let [x, y, z] = frame.camera.origin.to_array();
     rays.lanes.origin = [Column::splat(x), Column::splat(y), Column::splat(z)];
     frame.level.run_or_plain(CameraRays {

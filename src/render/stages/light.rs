@@ -7,9 +7,10 @@ use super::super::material::FrameMaterial;
 use super::super::{Counters, Frame};
 use super::trace::any_hits;
 use super::{
-    Column, Mirrors, Places, Rays, Shadows, Surfaces, get_rgb, get3, groups, set, set_rgb, set3,
+    Column, Mirrors, PLACES, Places, Rays, Shadows, Surfaces, get_rgb, get3, groups, set, set_rgb,
+    set3,
 };
-use crate::geometry::offset_by_bound;
+use crate::geometry::{HitLanes, offset_by_bound};
 use crate::math::simd::{Kernel, Simd};
 use crate::math::wide::Wide;
 use crate::math::{LinearRgb, Real, V3};
@@ -27,11 +28,12 @@ const MIN_LIGHT_DISTANCE: f32 = 1e-18;
 pub fn reflected_light(
     frame: &Frame<'_>,
     mirrors: Mirrors,
-    rays: &Rays,
+    (rays, hits): (&Rays, &HitLanes<PLACES>),
     surfaces: &mut Surfaces,
     shadows: &mut Shadows,
     counters: &mut Counters,
 ) {
+    shadows.rays.leaving = hits.prim;
     frame.level.run_or_plain(Ambient {
         frame,
         count: rays.count,

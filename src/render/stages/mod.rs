@@ -176,10 +176,11 @@ impl Work {
     ) {
         let (rays, surfaces) = (&mut self.rays, &mut self.surfaces);
         surface::mapped_surfaces(frame, rays, hits, surfaces, counters);
-        light::reflected_light(frame, mirrors, rays, surfaces, &mut self.shadows, counters);
+        let shadows = &mut self.shadows;
+        light::reflected_light(frame, mirrors, (rays, hits), surfaces, shadows, counters);
         bounce::gather(frame, mirrors, rays, surfaces, &mut self.radiance);
         rays.active = match mirrors {
-            Mirrors::Follow => bounce::turn_to_mirror_rays(frame, rays, surfaces),
+            Mirrors::Follow => bounce::turn_to_mirror_rays(frame, rays, hits, surfaces),
             Mirrors::End => Places::EMPTY,
         };
     }
