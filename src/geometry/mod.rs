@@ -19,5 +19,7 @@ pub use aabb::Aabb;
 pub use bvh::Bvh;
 pub use mesh::{TriangleAttributes, TriangleMesh};
 pub use normalization::Normalization;
-pub use ray::{Hit, HitLanes, NO_HIT, OriginRule, Ray, RayLanes, offset_by_bound, offset_origin};
+pub use ray::{
+    CachedHit, Hit, HitLanes, NO_HIT, OriginRule, Ray, RayLanes, offset_by_bound, offset_origin,
+};
 pub use slabs::RaySlabs;

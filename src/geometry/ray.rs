@@ -155,7 +155,23 @@ impl<const N: usize> RayLanes<N> {
     }
 }
 
+/// What one of [`HitLanes`] hit: triangle or [`NO_HIT`], and the weights of its second and third vertex.
+pub type CachedHit = (u32, f32, f32);
+
 impl<const N: usize> HitLanes<N> {
+    /// What the ray in a place hit.
+    #[must_use]
+    pub const fn get(&self, place: usize) -> CachedHit {
+        (self.prim.0[place], self.u.0[place], self.v.0[place])
+    }
+
+    /// Sets what the ray in a place hit.
+    pub const fn put(&mut self, place: usize, (prim, u, v): CachedHit) {
+        self.prim.0[place] = prim;
+        self.u.0[place] = u;
+        self.v.0[place] = v;
+    }
+
     /// No hits.
     #[must_use]
     pub const fn none() -> Self {

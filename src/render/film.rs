@@ -6,7 +6,9 @@ use rayon::prelude::*;
 
 use super::Counters;
 use super::sites::{BLOCK_SIZE, place_of};
+use super::stages::camera::Pixels;
 use super::tile::{TILE_SIZE, Tile};
+use crate::geometry::CachedHit;
 use crate::math::LinearRgb;
 
 /// A view of a renderer's sums. Row 0 is on top.
@@ -83,6 +85,27 @@ impl Film {
                 .unwrap_or_else(PoisonError::into_inner)
                 .reset(keep_hits);
         }
+    }
+
+    /// Adds to `known` what is known of the first hits of a tile of a finer film of the same picture, by the
+    /// tile's places.
+    ///
+    /// Every `r`-th pixel of the finer film is one of this, and a tile's are all in one tile here.
+    pub fn hits_for(&self, finer: &Pixels, known: &mut Vec<(usize, CachedHit)>) {
+        let ratio = self.stride / finer.stride;
+        let [x0, y0] = finer.corner.map(|n| n / ratio);
+        let [column, row] = [x0, y0].map(|n| n / TILE_SIZE);
+        let tile = row * self.size[0].div_ceil(TILE_SIZE) + column;
+        let Some(tile) = self.tiles.get(tile as usize) else {
+            return;
+        };
+        let tile = lock(tile);
+        let [x0, y0] = [x0 - column * TILE_SIZE, y0 - row * TILE_SIZE];
+        let side = TILE_SIZE / ratio;
+        let pixels = (0..side).flat_map(|y| (0..side).map(move |x| [x, y]));
+        let places = pixels.map(|[x, y]| (place_of(x * ratio, y * ratio), [x0 + x, y0 + y]));
+        let wanted = places.filter(|&(place, _)| finer.active.contains(place));
+        known.extend(wanted.map(|(place, [x, y])| (place, tile.hits.get(place_of(x, y)))));
     }
 
     /// Samples that every pixel has.

@@ -137,7 +137,9 @@ pub fn probe(snapshot: &Snapshot, pixel: [u32; 2]) -> Option<PixelStory> {
         return None;
     }
     let frame = Frame::new(snapshot);
-    let Scratch { mut hits, mut work } = Scratch::default();
+    let Scratch {
+        mut hits, mut work, ..
+    } = Scratch::default();
     let mut active = Places::EMPTY;
     active.insert(0);
     let pixels = Pixels {

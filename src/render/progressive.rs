@@ -44,7 +44,7 @@ pub struct Shown {
 ///
 /// Pass `k` is a pure function of the snapshot and `k`: preview history, thread count and stopping leave
 /// no trace in the finished picture. Previews are pictures of their own, from the same rays as every
-/// `stride`-th pixel's first sample.
+/// `stride`-th pixel's first sample, whose hits they hand on.
 #[derive(Debug)]
 pub struct Progressive {
     pool: rayon::ThreadPool,
@@ -113,21 +113,13 @@ impl Progressive {
         if self.snapshot.is_none() || self.finest().is_some_and(|film| film.stride <= stride) {
             return PassEnd::Complete;
         }
-        let index = stride.trailing_zeros() as usize;
-        let film = match index.checked_sub(1) {
-            None => &self.film,
-            Some(i) => {
-                let size = self.film.size;
-                self.previews[i].get_or_insert_with(|| Film::new(size, stride))
-            }
-        };
-        render(
-            &self.pool,
-            &self.scratch,
-            (self.snapshot.as_ref(), film),
-            1,
-            stop,
-        )
+        let size = self.film.size;
+        let preview = (stride.trailing_zeros() as usize).checked_sub(1);
+        if let Some(i) = preview {
+            self.previews[i].get_or_insert_with(|| Film::new(size, stride));
+        }
+        let film = preview.and_then(|i| self.previews[i].as_ref());
+        self.render(film.unwrap_or(&self.film), 1, stop)
     }
 
     /// Renders the next sample of every pixel; `stop` is polled before each tile. Does nothing once the
@@ -136,8 +128,40 @@ impl Progressive {
         let wanted = self.snapshot.as_ref().map_or(0, samples_wanted);
         // Tiles that a stopped pass had done already are ahead.
         let goal = (self.samples() + 1).min(wanted);
-        let job = (self.snapshot.as_ref(), &self.film);
-        render(&self.pool, &self.scratch, job, goal, stop)
+        self.render(&self.film, goal, stop)
+    }
+
+    /// Brings all tiles of a film to `goal` samples. `stop` is asked only before tiles that need one, so
+    /// that passes stopped again and again still come to an end.
+    fn render(&self, film: &Film, goal: u32, stop: &(dyn Fn() -> bool + Sync)) -> PassEnd {
+        let Some(snapshot) = &self.snapshot else {
+            return PassEnd::Complete;
+        };
+        let frame = Frame::new(snapshot);
+        let coarser = self.finest().filter(|known| known.stride > film.stride);
+        let next = AtomicUsize::new(0);
+        let done = AtomicUsize::new(0);
+        self.pool.broadcast(|context| {
+            // One worker per slot and one slot per worker: these locks are never waited for.
+            let mut scratch = self.scratch[context.index()]
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
+            while let Some(&i) = film.order.get(next.fetch_add(1, Ordering::Relaxed)) {
+                let mut tile = lock(&film.tiles[i]);
+                if tile.samples < goal {
+                    if stop() {
+                        break;
+                    }
+                    tile.sample(&frame, coarser, &mut scratch);
+                }
+                done.fetch_add(1, Ordering::Relaxed);
+            }
+        });
+        if done.into_inner() == film.order.len() {
+            PassEnd::Complete
+        } else {
+            PassEnd::Stopped
+        }
     }
 
     /// The snapshot being rendered.
@@ -269,44 +293,6 @@ fn encode(exposure_ev: f32) -> impl Fn(LinearRgb) -> [u8; 4] + Sync {
 
 fn samples_wanted(snapshot: &Snapshot) -> u32 {
     snapshot.settings.samples.max(1)
-}
-
-/// Brings all tiles of a film to `goal` samples. `stop` is asked only before tiles that need one, so that
-/// passes stopped again and again still come to an end.
-fn render(
-    pool: &rayon::ThreadPool,
-    scratch: &[Mutex<Scratch>],
-    (snapshot, film): (Option<&Snapshot>, &Film),
-    goal: u32,
-    stop: &(dyn Fn() -> bool + Sync),
-) -> PassEnd {
-    let Some(snapshot) = snapshot else {
-        return PassEnd::Complete;
-    };
-    let frame = Frame::new(snapshot);
-    let next = AtomicUsize::new(0);
-    let done = AtomicUsize::new(0);
-    pool.broadcast(|context| {
-        // One worker per slot and one slot per worker: these locks are never waited for.
-        let mut scratch = scratch[context.index()]
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        while let Some(&i) = film.order.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let mut tile = lock(&film.tiles[i]);
-            if tile.samples < goal {
-                if stop() {
-                    break;
-                }
-                tile.sample(&frame, &mut scratch);
-            }
-            done.fetch_add(1, Ordering::Relaxed);
-        }
-    });
-    if done.into_inner() == film.order.len() {
-        PassEnd::Complete
-    } else {
-        PassEnd::Stopped
-    }
 }
 
 /// Whether every camera ray of `a` hits the same in `b`.

@@ -40,7 +40,7 @@ fn walk(
     scratch: &mut Scratch,
     add: &mut impl FnMut(&RayLanes<PLACES>, Places),
 ) {
-    let Scratch { hits, work } = scratch;
+    let Scratch { hits, work, .. } = scratch;
     let counters = &mut Counters::default();
     for index in 0..=frame.max_bounces {
         let mirrors = mirrors_at(frame, index);

@@ -1,5 +1,6 @@
 //! One tile: its share of the film, its cached hits, and its passes.
 
+use super::film::Film;
 use super::sites::Sites;
 use super::stages::camera::Pixels;
 use super::stages::{self, Column, Column3, PLACES, Scratch, camera, film, trace};
@@ -23,8 +24,8 @@ pub struct Tile {
     pub counters: Counters,
     /// Sums of linear samples; anything before the first.
     pub sums: Box<Column3>,
-    /// Hits of the first samples, if `knows_hits`.
-    hits: Box<HitLanes<PLACES>>,
+    /// Hits of the first samples, if there is one.
+    pub hits: Box<HitLanes<PLACES>>,
     knows_hits: bool,
 }
 
@@ -55,17 +56,28 @@ impl Tile {
         self.knows_hits &= keep_hits;
     }
 
-    /// Renders the next sample of every pixel.
-    pub fn sample(&mut self, frame: &Frame<'_>, scratch: &mut Scratch) {
+    /// Renders the next sample of every pixel. The first takes hits over from a coarser film of the same
+    /// picture, if there is one.
+    pub fn sample(&mut self, frame: &Frame<'_>, coarser: Option<&Film>, scratch: &mut Scratch) {
         let (index, counters) = (self.samples, &mut self.counters);
-        let Scratch { hits, work } = scratch;
+        let Scratch { hits, known, work } = scratch;
         camera::camera_rays(frame, &self.pixels, index, &mut work.rays);
         work.radiance = [Column::splat(0.0); 3];
         // The first sample's hits are kept for the next snapshot, which may only shade them anew.
         let hits = if index == 0 { &mut self.hits } else { hits };
         if index > 0 || !self.knows_hits {
-            counters.camera_rays += self.pixels.active.count();
+            known.clear();
+            if let Some(film) = coarser.filter(|_| index == 0) {
+                film.hits_for(&self.pixels, known);
+            }
+            for &(place, _) in &*known {
+                work.rays.lanes.t_max.0[place] = -1.0;
+            }
+            counters.camera_rays += self.pixels.active.count() - known.len() as u64;
             trace::closest_hits(frame, &work.rays, hits, counters);
+            for &(place, hit) in &*known {
+                hits.put(place, hit);
+            }
             self.knows_hits = true;
         }
         work.shade_hits(frame, hits, stages::mirrors_at(frame, 0), counters);

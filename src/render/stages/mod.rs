@@ -14,7 +14,7 @@ pub mod surface;
 pub mod trace;
 
 use super::{Counters, Frame};
-use crate::geometry::{HitLanes, RayLanes, TriangleAttributes};
+use crate::geometry::{CachedHit, HitLanes, RayLanes, TriangleAttributes};
 use crate::math::lanes::{Lanes, PlaceSet};
 use crate::math::simd::{Simd, SimdBase as _};
 use crate::math::wide::{Wide, WideMask};
@@ -114,6 +114,8 @@ pub struct Shadows {
 pub struct Scratch {
     /// What the rays of this bounce hit.
     pub hits: Box<HitLanes<PLACES>>,
+    /// Hits that need not be found, by place.
+    pub known: Vec<(usize, CachedHit)>,
     /// Everything else.
     pub work: Box<Work>,
 }
@@ -136,6 +138,7 @@ impl Default for Scratch {
         const ZEROS: Column3 = [Column::splat(0.0); 3];
         Self {
             hits: Box::new(HitLanes::none()),
+            known: Vec::new(),
             work: Box::new(Work {
                 rays: Rays {
                     count: 0,
@@ -189,7 +192,7 @@ impl Work {
 impl Scratch {
     /// Follows the mirror rays through all bounces after the first: no recursion.
     pub fn follow_mirrors(&mut self, frame: &Frame<'_>, counters: &mut Counters) {
-        let Self { hits, work } = self;
+        let Self { hits, work, .. } = self;
         for bounce in 1..=frame.max_bounces {
             if work.rays.active.is_empty() {
                 break;
