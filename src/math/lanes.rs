@@ -105,6 +105,12 @@ impl<const W: usize> PlaceSet<W> {
         words.flat_map(|(word, bits)| ones(bits).map(move |bit| word * 64 + bit))
     }
 
+    /// The groups of a vector's width that have any of the places, in order.
+    #[inline(always)]
+    pub(crate) fn groups<S: Simd>(self) -> impl Iterator<Item = usize> {
+        (0..64 * W / S::f32s::LEN).filter(move |&group| self.bits::<S>(group) != 0)
+    }
+
     /// The lanes of a group as bits.
     #[inline(always)]
     pub(crate) const fn bits<S: Simd>(&self, group: usize) -> u64 {

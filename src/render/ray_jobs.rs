@@ -55,7 +55,7 @@ fn walk(
         let lights = frame.lights.iter().filter(|light| is_sent_to(kind, light));
         for light in lights.filter(|_| frame.shadows) {
             let shadows = &mut work.shadows;
-            light::aim_at_light(frame, light, mirrors, &work.rays, &work.surfaces, shadows);
+            light::aim_at_light(frame, light, mirrors, &work.surfaces, shadows);
             add(&shadows.rays, shadows.lit);
         }
         work.rays.active = bounce::turn_to_mirror_rays(frame, &mut work.rays, hits, &work.surfaces);

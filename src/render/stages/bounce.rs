@@ -2,8 +2,7 @@
 
 use super::super::Frame;
 use super::{
-    Column, Column3, Mirrors, PLACES, Places, Rays, Surfaces, get_rgb, get3, groups, set, set_rgb,
-    set3,
+    Column, Column3, Mirrors, PLACES, Places, Rays, Surfaces, get_rgb, get3, set, set_rgb, set3,
 };
 use crate::geometry::{HitLanes, offset_by_bound};
 use crate::math::Real as _;
@@ -47,20 +46,14 @@ impl Kernel for Gather<'_> {
             missed = missed & !run.places;
             let material = &self.frame.materials[run.material];
             let local = self.mirrors.local_share(material.reflectivity);
-            for group in 0..groups::<S>(self.rays.count) {
-                if run.places.bits::<S>(group) == 0 {
-                    continue;
-                }
+            for group in run.places.groups::<S>() {
                 let weight = self.rays.weight.get(simd, group) * local;
                 let sum = get_rgb(simd, self.radiance, group)
                     + get_rgb(simd, &self.surfaces.reflected, group) * weight;
                 set_rgb(self.radiance, group, run.places.mask(simd, group), sum);
             }
         }
-        for group in 0..groups::<S>(self.rays.count) {
-            if missed.bits::<S>(group) == 0 {
-                continue;
-            }
+        for group in missed.groups::<S>() {
             let behind = self
                 .frame
                 .background(get3(simd, &self.rays.lanes.dir, group));
@@ -109,10 +102,7 @@ impl Kernel for MirrorRays<'_> {
             if reflectivity <= 0.0 {
                 continue;
             }
-            for group in 0..groups::<S>(to.count) {
-                if run.places.bits::<S>(group) == 0 {
-                    continue;
-                }
+            for group in run.places.groups::<S>() {
                 let weight = to.weight.get(simd, group) * reflectivity;
                 let shows = weight.ge(Wide::new(simd, MIN_WEIGHT));
                 let mask = run.places.mask(simd, group) & shows;

@@ -40,7 +40,7 @@ pub fn reflected_light(
         surfaces,
     });
     for light in &frame.lights {
-        aim_at_light(frame, light, mirrors, rays, surfaces, shadows);
+        aim_at_light(frame, light, mirrors, surfaces, shadows);
         shadows.occluded = Places::EMPTY;
         if frame.shadows && !shadows.lit.is_empty() {
             any_hits(frame, rays.count, shadows, counters);
@@ -61,7 +61,6 @@ pub fn aim_at_light(
     frame: &Frame<'_>,
     light: &FrameLight,
     mirrors: Mirrors,
-    rays: &Rays,
     surfaces: &Surfaces,
     shadows: &mut Shadows,
 ) {
@@ -69,7 +68,6 @@ pub fn aim_at_light(
         frame,
         light,
         mirrors,
-        count: rays.count,
         surfaces,
         shadows,
     });
@@ -102,7 +100,6 @@ struct AimAtLight<'a> {
     frame: &'a Frame<'a>,
     light: &'a FrameLight,
     mirrors: Mirrors,
-    count: usize,
     surfaces: &'a Surfaces,
     shadows: &'a mut Shadows,
 }
@@ -119,10 +116,7 @@ impl Kernel for AimAtLight<'_> {
             if self.mirrors.local_share(material.reflectivity) <= 0.0 {
                 continue;
             }
-            for group in 0..groups::<S>(self.count) {
-                if run.places.bits::<S>(group) == 0 {
-                    continue;
-                }
+            for group in run.places.groups::<S>() {
                 let mut lit = run.places.mask(simd, group);
                 if !material.is_glossy {
                     let LinearRgb { r, g, b } = get_rgb(simd, &from.diffuse, group);
@@ -206,11 +200,9 @@ impl Kernel for AddLight<'_> {
         let mut powers = Places::EMPTY;
         for run in &surfaces.runs {
             let material = &self.frame.materials[run.material];
-            for group in 0..groups::<S>(self.rays.count) {
-                if run.places.bits::<S>(group) & seen.bits::<S>(group) == 0 {
-                    continue;
-                }
-                let mask = run.places.mask(simd, group) & seen.mask(simd, group);
+            let seen = run.places & seen;
+            for group in seen.groups::<S>() {
+                let mask = seen.mask(simd, group);
                 let response = response(
                     self.frame.model,
                     material,

@@ -123,12 +123,8 @@ impl Kernel for MapRun<'_> {
     fn run<S: Simd>(self, simd: S) {
         let material = &self.frame.materials[self.run.material];
         let mut last = None;
-        for group in 0..groups::<S>(self.rays.count) {
-            let places = self.run.places.bits::<S>(group);
-            if places == 0 {
-                continue;
-            }
-            let lane = places.trailing_zeros() as usize;
+        for group in self.run.places.groups::<S>() {
+            let lane = self.run.places.bits::<S>(group).trailing_zeros() as usize;
             let mask = self.run.places.mask(simd, group);
             let facet = self.facet(self.hits.prim.get(simd, group), (mask, lane), &mut last);
             let barycentrics = (self.hits.u.get(simd, group), self.hits.v.get(simd, group));
