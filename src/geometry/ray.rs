@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::Aabb;
 use crate::math::lanes::Lanes;
 use crate::math::{Real, V3};
 
@@ -19,6 +20,18 @@ impl Ray {
     #[must_use]
     pub fn at(&self, t: f32) -> Vec3 {
         self.origin + self.dir * t
+    }
+
+    /// Whether it starts beyond one face of the box and runs further away from it, so that nothing inside
+    /// can be in its way. Exact: only coordinates are compared. The rays that leave an outermost surface,
+    /// all rays above a flat one, need no more than this.
+    #[must_use]
+    #[inline(always)]
+    pub fn runs_away_from(&self, bounds: &Aabb) -> bool {
+        let zero = Vec3::ZERO;
+        let up = self.origin.cmpgt(bounds.max) & self.dir.cmpgt(zero);
+        let down = self.origin.cmplt(bounds.min) & self.dir.cmplt(zero);
+        (up | down).any()
     }
 }
 

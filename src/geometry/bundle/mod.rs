@@ -14,7 +14,7 @@ use std::ops::Range;
 
 use super::slabs::{MIN_COMPONENT, PADDING};
 use super::triangle::Axis;
-use super::{NO_HIT, Ray, RayLanes};
+use super::{Aabb, NO_HIT, Ray, RayLanes};
 use crate::math::simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
 pub(super) use hull::{Boxes, Hull};
@@ -152,6 +152,27 @@ impl Bundle {
         }
         let leaving = rays.leaving.group(place, width);
         self.leaving.0.copy_from_slice(leaving);
+    }
+
+    /// [`Ray::runs_away_from`] for all rays.
+    #[inline(always)]
+    pub(super) fn running_away<S: Simd>(&self, simd: S, bounds: &Aabb) -> RaySet {
+        let splat = |x| S::f32s::splat(simd, x);
+        let (min, max) = (bounds.min.to_array(), bounds.max.to_array());
+        let zero = splat(0.0);
+        let mut set = 0;
+        for group in 0..RAYS / S::f32s::LEN {
+            let mut away = zero.simd_gt(zero);
+            for axis in 0..3 {
+                let origin = self.origin[axis].load(simd, group);
+                let dir = self.dir[axis].load(simd, group);
+                let up = origin.simd_gt(splat(max[axis])) & dir.simd_gt(zero);
+                let down = origin.simd_lt(splat(min[axis])) & dir.simd_lt(zero);
+                away = away | up | down;
+            }
+            set |= away.to_bitmask() << (group * S::f32s::LEN);
+        }
+        set
     }
 
     /// Sorts the rays by dominant axis, as [`Axis::of_largest`] does. Rays that are not of unit length,

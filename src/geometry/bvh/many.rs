@@ -285,7 +285,10 @@ impl<R: RaySource, Q: LaneQuery, A: Answers<Q>> Kernel for Many<'_, R, Q, A> {
         for first in (0..self.rays.count()).step_by(RAYS) {
             self.answers.clear(first);
             self.rays.load(first, &mut bundle, &mut t_max);
-            let hopeful = above_zero(simd, &t_max);
+            let mut hopeful = above_zero(simd, &t_max);
+            if hopeful != 0 {
+                hopeful &= !bundle.running_away(simd, &self.bvh.bounds);
+            }
             if hopeful == 0 {
                 continue;
             }

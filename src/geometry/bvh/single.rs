@@ -68,7 +68,9 @@ impl Bvh {
     /// [`Self::traverse`] with a stack of its own, which a tree of one leaf does not need.
     #[inline(always)]
     fn traverse_alone<T: TriangleTest>(&self, ray: &Ray, search: &mut impl Search) -> bool {
-        if self.nodes.is_empty() {
+        if ray.runs_away_from(&self.bounds) {
+            false
+        } else if self.nodes.is_empty() {
             let (test, slabs) = (T::new(ray), RaySlabs::new(ray, self.reach));
             self.blocks
                 .first()
@@ -86,8 +88,11 @@ impl Bvh {
         stack: &mut Stack,
         search: &mut impl Search,
     ) -> bool {
-        let (test, slabs) = (T::new(ray), RaySlabs::new(ray, self.reach));
         stack.clear();
+        if ray.runs_away_from(&self.bounds) {
+            return false;
+        }
+        let (test, slabs) = (T::new(ray), RaySlabs::new(ray, self.reach));
         let mut next = self.root;
         loop {
             match next.unpack() {
