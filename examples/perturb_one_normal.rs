@@ -10,7 +10,9 @@ use reliefscope::surface::SurfaceInteraction;
 use reliefscope::surface::mapping::{
     BoundHeight, BoundNormal, MappingSettings, MaterialMapping, MaterialMaps, Method,
 };
-use reliefscope::texture::{Addressing, Grid, HeightMap, MapRole, MapSlot, NormalMap};
+use reliefscope::texture::{
+    Addressing, ConeMap, Grid, HeightMap, HeightPyramid, MapRole, MapSlot, NormalMap, Wrap,
+};
 
 const AMPLITUDE: f32 = 0.5;
 const MIDLEVEL: f32 = 1.0;
@@ -32,15 +34,19 @@ fn main() {
         strength: 1.0,
         signs: Vec2::ONE,
     };
+    let pyramid = HeightPyramid::new(&heights, Wrap::Repeat);
+    let cones = ConeMap::new(&heights, Wrap::Repeat, false);
     let maps = MaterialMaps {
-        height: Some(BoundHeight {
-            map: &heights,
-            addressing: addressing(MapRole::Height),
-            scale: AMPLITUDE,
-            offset: -AMPLITUDE * MIDLEVEL,
-        }),
+        height: Some(BoundHeight::new(
+            &heights,
+            addressing(MapRole::Height),
+            AMPLITUDE,
+            -AMPLITUDE * MIDLEVEL,
+        )),
         normal: Some(bound_normal(&normals, MapRole::Normal)),
         slope: Some(bound_normal(&slopes, MapRole::Slope)),
+        pyramid: Some(&pyramid),
+        cones: Some(&cones),
     };
 
     println!("method             normal                 tilt   uv");
@@ -50,7 +56,7 @@ fn main() {
             ..MappingSettings::default()
         };
         let mut s = flat_point();
-        MaterialMapping::choose(&settings, &maps).apply(&mut s);
+        MaterialMapping::choose(&settings, &maps).apply(&mut s, true);
         let (normal, uv) = (Vec3::from(s.n_shade), Vec2::from(s.uv));
         let tilt_deg = normal.angle_between(Vec3::Z).to_degrees();
         println!(
@@ -74,5 +80,8 @@ fn flat_point() -> SurfaceInteraction {
         grad_v: Vec3::Y.into(),
         dp_du: Vec3::X.into(),
         handedness: 1.0,
+        n_smooth: Vec3::Z.into(),
+        sunk: 0.0,
+        steps: 0.0,
     }
 }

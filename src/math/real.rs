@@ -57,6 +57,14 @@ pub trait Real:
     /// Whole part towards zero. The number must be in `[0, 2³¹)`.
     fn to_index(self) -> Self::Bits;
 
+    /// `f` of each lane that is `wanted`, one after the other; 0 elsewhere. For work that lanes cannot do
+    /// in step.
+    fn each<const I: usize, const O: usize>(
+        wanted: Self::Mask,
+        inputs: [Self; I],
+        f: impl Fn([f32; I]) -> [f32; O],
+    ) -> [Self; O];
+
     /// `self > o`; no for NaN.
     #[inline(always)]
     fn gt(self, o: Self) -> Self::Mask {
@@ -163,6 +171,15 @@ pub trait Bits: Copy + Debug {
 impl Real for f32 {
     type Mask = bool;
     type Bits = u32;
+
+    #[inline(always)]
+    fn each<const I: usize, const O: usize>(
+        wanted: bool,
+        inputs: [Self; I],
+        f: impl Fn([Self; I]) -> [Self; O],
+    ) -> [Self; O] {
+        if wanted { f(inputs) } else { [0.0; O] }
+    }
 
     #[inline(always)]
     fn splat(self, x: f32) -> Self {

@@ -143,6 +143,27 @@ impl<S: Simd> Real for Wide<S> {
         WideBits(self.0.bitcast())
     }
     #[inline(always)]
+    fn each<const I: usize, const O: usize>(
+        wanted: WideMask<S>,
+        inputs: [Self; I],
+        f: impl Fn([f32; I]) -> [f32; O],
+    ) -> [Self; O] {
+        let simd = wanted.0.token();
+        let mut lanes = [[0.0; I]; MAX_LANES];
+        for (i, input) in inputs.iter().enumerate() {
+            for (lane, &x) in input.0.as_slice().iter().enumerate() {
+                lanes[lane % MAX_LANES][i] = x;
+            }
+        }
+        let mut found = [[0.0; MAX_LANES]; O];
+        each_lane(wanted.0.to_bitmask(), &lanes, f, &mut found);
+        let mut wide = [Self::new(simd, 0.0); O];
+        for o in 0..O {
+            wide[o] = Self(S::f32s::from_slice(simd, &found[o][..S::f32s::LEN]));
+        }
+        wide
+    }
+    #[inline(always)]
     fn to_index(self) -> WideBits<S> {
         // Through signed integers, which machines before AVX-512 convert in one instruction.
         WideBits(self.0.to_int::<S::i32s>().bitcast())
@@ -228,6 +249,23 @@ impl<S: Simd> Bits for WideBits<S> {
             }
         }
         wide
+    }
+}
+
+/// `found[o][lane]` is the `o`-th number of `f` of each lane in the mask.
+#[inline(never)]
+fn each_lane<const I: usize, const O: usize>(
+    mut wanted: u64,
+    lanes: &[[f32; I]; MAX_LANES],
+    f: impl Fn([f32; I]) -> [f32; O],
+    found: &mut [[f32; MAX_LANES]; O],
+) {
+    while wanted != 0 {
+        let lane = wanted.trailing_zeros() as usize % MAX_LANES;
+        wanted &= wanted - 1;
+        for (found, x) in found.iter_mut().zip(f(lanes[lane])) {
+            found[lane] = x;
+        }
     }
 }
 

@@ -21,6 +21,10 @@ pub struct Counters {
     pub power_calls: u64,
     /// Cut-out decisions taken for eye, mirror and shadow rays.
     pub cutout_tests: u64,
+    /// Height samples and pyramid nodes that searches and relief shadows looked at.
+    pub relief_steps: u64,
+    /// Points asked whether their own relief shadows them.
+    pub relief_shadow_walks: u64,
     /// Samples that were not finite and counted as black.
     pub non_finite: u64,
 }
@@ -35,6 +39,8 @@ impl Counters {
         perturbations: 0,
         power_calls: 0,
         cutout_tests: 0,
+        relief_steps: 0,
+        relief_shadow_walks: 0,
         non_finite: 0,
     };
 
@@ -54,6 +60,8 @@ impl AddAssign for Counters {
         self.perturbations += o.perturbations;
         self.power_calls += o.power_calls;
         self.cutout_tests += o.cutout_tests;
+        self.relief_steps += o.relief_steps;
+        self.relief_shadow_walks += o.relief_shadow_walks;
         self.non_finite += o.non_finite;
     }
 }

@@ -105,6 +105,15 @@ impl<'a> FrameMaterial<'a> {
             slope: slot(MapRole::Slope)
                 .filter(|_| reads.slope)
                 .map(|s| bind_normal(s, scene, material, mapping)),
+            pyramid: slot(MapRole::Height)
+                .filter(|_| mapping.needs_pyramid() && internal_amplitude != 0.0)
+                .map(|s| scene.images[s.image].pyramid(s.channel, s.wrap)),
+            cones: slot(MapRole::Height)
+                .filter(|_| mapping.needs_cones() && internal_amplitude != 0.0)
+                .map(|s| {
+                    let inverted = internal_amplitude * s.gain_and_bias().0 < 0.0;
+                    scene.images[s.image].cones(s.channel, s.wrap, inverted)
+                }),
         };
         Self {
             kd: material.kd,
@@ -158,6 +167,7 @@ fn bind_height<'a>(
         addressing: Addressing::from_slot(slot),
         scale: amplitude * gain,
         offset: amplitude * (bias - midlevel),
+        stored: scene.images[slot.image].height_extremes(slot.channel),
     }
 }
 

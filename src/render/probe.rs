@@ -12,7 +12,8 @@ use super::stages::{
 use super::{Counters, Frame, Snapshot};
 use crate::geometry::triangle::Watertight;
 use crate::geometry::{Hit, Ray, offset_by_bound};
-use crate::math::{LinearRgb, V3, srgb8_from_linear};
+use crate::math::{LinearRgb, V3, gamma, srgb8_from_linear};
+use crate::surface::mapping::relief::is_shadowed;
 use crate::surface::{SurfaceInteraction, SurfaceParts, surface_at};
 
 /// Every step from a pixel's first ray to its colour. Lengths are world units, directions unit vectors,
@@ -118,6 +119,8 @@ pub enum Visibility {
     Visible,
     /// It is behind the geometric or the perturbed surface; no shadow ray was traced.
     Behind,
+    /// The relief itself stands in between.
+    ShadowedByRelief,
     /// A triangle stands in between, at this distance from the point.
     Shadowed {
         /// Triangle index.
@@ -216,7 +219,7 @@ fn hit_story(snapshot: &Snapshot, frame: &Frame<'_>, ray: &Ray, hit: &Hit) -> Hi
     let parts = material.parts(attributes.has_uv);
     let plain = surface_at(frame.mesh, hit, ray, parts);
     let mut mapped = plain;
-    let diffuse = surface::perturb(material, parts, &mut mapped);
+    let diffuse = surface::perturb(material, parts, &mut mapped, true);
     let has_uv = parts > SurfaceParts::Plain;
     let front = plain.wo.dot(plain.n_geo) >= 0.0;
     let towards_eye = |n: V3| Vec3::from(if front { n } else { -n });
@@ -246,7 +249,14 @@ fn hit_story(snapshot: &Snapshot, frame: &Frame<'_>, ray: &Ray, hit: &Hit) -> Hi
         lights: frame
             .lights
             .iter()
-            .filter_map(|l| light_story(snapshot, frame, l, (&mapped, diffuse, index)))
+            .filter_map(|l| {
+                light_story(
+                    snapshot,
+                    frame,
+                    l,
+                    (&mapped, diffuse, index, attributes.smooth),
+                )
+            })
             .collect(),
         reflectivity: material.reflectivity,
     }
@@ -256,7 +266,7 @@ fn light_story(
     snapshot: &Snapshot,
     frame: &Frame<'_>,
     light: &super::frame::FrameLight,
-    (s, diffuse, material): (&SurfaceInteraction, LinearRgb, usize),
+    (s, diffuse, material, smooth): (&SurfaceInteraction, LinearRgb, usize, bool),
 ) -> Option<LightStory> {
     let normalization = &snapshot.scene.normalization;
     let arriving = light::arriving(light, s.p);
@@ -268,9 +278,11 @@ fn light_story(
     let (cos_geo, cos_shade) = (s.n_geo.dot(wi), s.n_shade.dot(wi));
     let visibility = if !(cos_geo > 0.0 && cos_shade > 0.0) {
         Visibility::Behind
+    } else if frame.shadows && is_shadowed_by_relief(frame, s, wi, material) {
+        Visibility::ShadowedByRelief
     } else if let Some(hit) = frame
         .shadows
-        .then(|| occluder(frame, s, wi, distance))
+        .then(|| occluder(frame, s, (wi, distance), smooth))
         .flatten()
     {
         Visibility::Shadowed {
@@ -302,9 +314,31 @@ fn light_story(
     })
 }
 
+/// Whether the relief at a point keeps a light from it.
+fn is_shadowed_by_relief(
+    frame: &Frame<'_>,
+    s: &SurfaceInteraction,
+    wi: V3,
+    material: usize,
+) -> bool {
+    let field = frame.materials[material].mapping.self_shadow();
+    field.filter(|_| s.steps > 0.0).is_some_and(|field| {
+        let gradients = [s.grad_u, s.grad_v];
+        is_shadowed(field, true, (s.uv, gradients, s.n_smooth), wi).0
+    })
+}
+
 /// The nearest thing between a point and a light.
-fn occluder(frame: &Frame<'_>, s: &SurfaceInteraction, wi: V3, distance: f32) -> Option<Hit> {
-    let origin = offset_by_bound(s.p, s.n_geo.abs().dot(s.p_error), s.n_geo, wi).into();
+fn occluder(
+    frame: &Frame<'_>,
+    s: &SurfaceInteraction,
+    (wi, distance): (V3, f32),
+    smooth: bool,
+) -> Option<Hit> {
+    let way_out = stages::relief::way_out((s.sunk, s.n_geo), s.wo, wi, smooth);
+    let rounding = way_out.abs().dot(s.n_geo.abs()) * gamma(8);
+    let bound = s.n_geo.abs().dot(s.p_error) + rounding;
+    let origin = offset_by_bound(s.p + way_out, bound, s.n_geo, wi).into();
     let dir = wi.into();
     nearest(frame, &Ray { origin, dir }, distance * light::LIGHT_END)
 }
@@ -413,6 +447,7 @@ impl fmt::Display for LightStory {
                 C(self.specular)
             ),
             Visibility::Behind => writeln!(f, "behind the surface, no shadow ray"),
+            Visibility::ShadowedByRelief => writeln!(f, "shadowed by the relief itself"),
             Visibility::Shadowed { triangle, t } => {
                 writeln!(f, "shadowed by triangle {triangle} at {t:.6}")
             }

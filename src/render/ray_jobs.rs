@@ -6,7 +6,9 @@
 use super::film::{Film, lock};
 use super::frame::{FrameLight, FrameLightKind};
 use super::ray_list::{RayKind, RayList};
-use super::stages::{PLACES, Places, Scratch, bounce, camera, light, mirrors_at, surface, trace};
+use super::stages::{
+    PLACES, Places, Scratch, bounce, camera, light, mirrors_at, relief, surface, trace,
+};
 use super::{Counters, Frame, Snapshot};
 use crate::geometry::RayLanes;
 
@@ -55,7 +57,8 @@ fn walk(
         let lights = frame.lights.iter().filter(|light| is_sent_to(kind, light));
         for light in lights.filter(|_| frame.shadows) {
             let shadows = &mut work.shadows;
-            light::aim_at_light(frame, light, mirrors, &work.surfaces, shadows);
+            light::aim_at_light(frame, light, mirrors, (&work.rays, &work.surfaces), shadows);
+            relief::shadow_by_relief(frame, &work.surfaces, shadows, counters);
             add(&shadows.rays, shadows.lit);
         }
         work.rays.active = bounce::turn_to_mirror_rays(frame, &mut work.rays, hits, &work.surfaces);

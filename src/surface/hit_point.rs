@@ -58,12 +58,15 @@ pub fn surface_on<F: Real>(
         p_error: (q0.abs() + q1.abs() + q2.abs()) * one.splat(gamma(7)),
         n_geo: n_winding,
         n_shade: n_winding,
+        n_smooth: n_winding,
         wo,
         uv: V2::new(zero, zero),
         grad_u: facet.grad_u,
         grad_v: facet.grad_v,
         dp_du: facet.dp_du,
         handedness: facet.handedness,
+        sunk: zero,
+        steps: zero,
     };
     if kind.smooth {
         let [n0, n1, n2] = facet.n;
@@ -72,6 +75,7 @@ pub fn surface_on<F: Real>(
         s.n_geo = V3::select(on_back, -n_winding, n_winding);
         s.handedness = F::select(on_back, -s.handedness, s.handedness);
     }
+    s.n_smooth = s.n_shade;
     if kind.parts >= SurfaceParts::Uv {
         let [t0, t1, t2] = facet.uv;
         s.uv = t0 * b0 + t1 * b1 + t2 * b2;

@@ -13,6 +13,8 @@ pub struct SurfaceInteraction<F = f32> {
     pub n_geo: V3<F>,
     /// Unit shading normal on the front side: interpolated, then perturbed by the mapping.
     pub n_shade: V3<F>,
+    /// The smooth normal before any map tilts it, on the front side.
+    pub n_smooth: V3<F>,
     /// Unit direction to the eye.
     pub wo: V3<F>,
     /// Texture coordinate, v up; moved by parallax methods.
@@ -25,4 +27,9 @@ pub struct SurfaceInteraction<F = f32> {
     pub dp_du: V3<F>,
     /// `+1`, or `−1` where the texture is mirrored, or 0 where it has no area.
     pub handedness: F,
+    /// How far the place that a search found lies under the triangle's plane, along `n_geo`; negative over
+    /// it, 0 without a search. `p` is that place.
+    pub sunk: F,
+    /// Samples or nodes that the search took.
+    pub steps: F,
 }

@@ -71,6 +71,24 @@ impl HeightMap {
         }
     }
 
+    /// Smallest and largest stored height.
+    #[must_use]
+    pub fn extremes(&self) -> [f32; 2] {
+        fn of<T: Copy + PartialOrd>(texels: &[T]) -> [T; 2] {
+            let first = [texels[0]; 2];
+            texels.iter().fold(first, |[low, high], &t| {
+                [
+                    if t < low { t } else { low },
+                    if t > high { t } else { high },
+                ]
+            })
+        }
+        match self {
+            Self::U16(g) => of(g.texels()).map(fraction),
+            Self::F32(g) => of(g.texels()),
+        }
+    }
+
     /// Stored value of the texel in column `x`, row `y`.
     ///
     /// # Panics
@@ -133,12 +151,16 @@ impl HeightMap {
         (cell, [a, b, c, d])
     }
 
-    fn size(&self) -> Vec2 {
+    /// Columns and rows.
+    #[must_use]
+    #[inline(always)]
+    pub fn size(&self) -> Vec2 {
         Vec2::new(self.width() as f32, self.height() as f32)
     }
 }
 
-fn fraction(stored: u16) -> f32 {
+/// The height that a stored number means.
+pub(super) fn fraction(stored: u16) -> f32 {
     f32::from(stored) * (1.0 / 65_535.0)
 }
 

@@ -2,20 +2,24 @@
 
 mod addressing;
 mod color_map;
+mod cone_map;
 mod grid;
 mod height_map;
 mod image_store;
 mod normal_map;
+mod pyramid;
 mod raw_image;
 mod slot;
 mod wrap;
 
 pub use addressing::Addressing;
 pub use color_map::ColorMap;
+pub use cone_map::ConeMap;
 pub use grid::{BilinearCell, Grid};
 pub use height_map::{HeightMap, HeightSlope};
 pub use image_store::MapImage;
 pub use normal_map::NormalMap;
+pub use pyramid::{HeightPyramid, Level, StoredHeights};
 pub use raw_image::{RawImage, Samples};
 pub use slot::{Channel, MapRole, MapSlot};
 pub use wrap::Wrap;

@@ -135,7 +135,7 @@ fn the_small_quad_shadows_the_large_one() {
                 assert!(shadowed && (t - 0.4).abs() < 1e-6, "{story}")
             }
             Visibility::Visible => assert!(!shadowed, "{story}"),
-            Visibility::Behind => panic!("{story}"),
+            Visibility::Behind | Visibility::ShadowedByRelief => panic!("{story}"),
         }
     }
     let without = edited(&lit_by(&dark, down, 1.0), |s| s.shading.shadows = false);

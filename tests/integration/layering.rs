@@ -17,6 +17,7 @@ const DOORS: [(&str, &[&str]); 13] = [
         &[
             "geometry/bvh/build",
             "scene/load",
+            "texture/cone_map",
             "render",
             "measure/bench",
         ],

@@ -149,11 +149,12 @@ fn a_flat_map_below_the_mesh_moves_only_parallax() {
     let snapshot = quad_with([4, 4], |_, _| 0.5).snapshot();
     let flat = picture(&none(&snapshot));
     for (name, with) in every_method(&snapshot) {
+        let method = with.settings.mapping.method;
+        // A search finds the floor itself, which lamps see from elsewhere; the others stay where they are.
         assert!(
-            max_difference(&flat, &picture(&with)) < 1e-6,
+            method.searches() || max_difference(&flat, &picture(&with)) < 1e-6,
             "{name}: no albedo map, nothing to see move"
         );
-        let method = with.settings.mapping.method;
         let story = reliefscope::render::probe(&with, [20, 30]).expect("inside");
         let hit = story.bounces[0]
             .hit
@@ -163,15 +164,21 @@ fn a_flat_map_below_the_mesh_moves_only_parallax() {
             let (uv, moved) = (hit.uv.expect("uv"), hit.uv_moved.expect("uv"));
             let shift = Vec2::from(moved) - Vec2::from(uv);
             let wo = -glam::Vec3::from(story.bounces[0].dir).as_dvec3();
-            let divisor = if method == Method::Parallax {
-                wo.z
+            // A few steps do not reach the floor.
+            let tolerance = if method == Method::Iterative {
+                1e-3
             } else {
+                1e-6
+            };
+            let divisor = if method == Method::ParallaxLimited {
                 1.0
+            } else {
+                wo.z
             };
             // d · V_xy / V_z in world units, half of it in texture units: a tile is two units wide.
             let expected = (-0.025 * wo.truncate() / divisor * 0.5).as_vec2();
             assert!(
-                (shift - expected).length() < 1e-6,
+                (shift - expected).length() < tolerance,
                 "{name}: {shift} should be {expected}"
             );
         }

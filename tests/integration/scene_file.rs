@@ -14,7 +14,7 @@ use reliefscope::scene::{
     Background, Camera, LoadError, LoadedScene, SceneSource, ShadingModel, open,
 };
 use reliefscope::shading::{Falloff, Light, LightKind, Material};
-use reliefscope::surface::mapping::{Derivative, Lookup, Method};
+use reliefscope::surface::mapping::{Derivative, Lookup, Method, SearchSettings};
 use reliefscope::texture::{Channel, MapRole, MapSlot, Wrap};
 use tempfile::TempDir;
 
@@ -252,6 +252,13 @@ impl Random {
         mapping.use_height = self.flag();
         mapping.use_normal = self.flag();
         mapping.use_parallax = self.flag();
+        mapping.search = SearchSettings {
+            layers: 1 + self.below(4096),
+            min_layers: 1 + self.below(4096),
+            bisections: self.below(33),
+            iterations: 1 + self.below(64),
+            self_shadow: self.flag(),
+        };
         settings.samples = 1 + self.below(1000);
         for material in &mut settings.materials {
             self.material(material, images);

@@ -2,12 +2,13 @@
 
 use super::super::Frame;
 use super::{
-    Column, Column3, Mirrors, PLACES, Places, Rays, Surfaces, get_rgb, get3, set, set_rgb, set3,
+    Column, Column3, Mirrors, PLACES, Places, Rays, Surfaces, get_rgb, get3, relief, set, set_rgb,
+    set3,
 };
 use crate::geometry::{HitLanes, offset_by_bound};
-use crate::math::Real as _;
 use crate::math::simd::{Kernel, Simd};
 use crate::math::wide::Wide;
+use crate::math::{Real as _, gamma};
 use crate::shading::mirror_direction;
 
 /// A mirror ray with a smaller share of its pixel than this is not followed: half a step of 8 bits.
@@ -110,7 +111,15 @@ impl Kernel for MirrorRays<'_> {
                 let n_shade = get3(simd, &from.n_shade, group);
                 let wo = -get3(simd, &to.lanes.dir, group);
                 let dir = mirror_direction(n_shade, n_geo, wo);
-                let (p, bound) = (get3(simd, &from.p, group), from.bound.get(simd, group));
+                let mut p = get3(simd, &from.p, group);
+                let mut bound = from.bound.get(simd, group);
+                if self.frame.materials[run.material].mapping.searches() {
+                    let sunk = from.relief.sunk.get(simd, group);
+                    let way_out = relief::way_out((sunk, n_geo), wo, dir, run.kind.smooth);
+                    p = p + way_out;
+                    let rounding = sunk.splat(gamma(8));
+                    bound = bound + way_out.abs().dot(n_geo.abs()) * rounding;
+                }
                 let origin = offset_by_bound(p, bound, n_geo, dir);
                 set3(&mut to.lanes.origin, group, mask, origin);
                 set3(&mut to.lanes.dir, group, mask, dir);

@@ -5,6 +5,7 @@ use std::f32::consts::{FRAC_1_PI, TAU};
 use super::super::frame::{FrameLight, FrameLightKind};
 use super::super::material::FrameMaterial;
 use super::super::{Counters, Frame};
+use super::relief;
 use super::trace::any_hits;
 use super::{
     Column, Mirrors, PLACES, Places, Rays, Shadows, Surfaces, get_rgb, get3, groups, set, set_rgb,
@@ -13,7 +14,7 @@ use super::{
 use crate::geometry::{HitLanes, offset_by_bound};
 use crate::math::simd::{Kernel, Simd};
 use crate::math::wide::Wide;
-use crate::math::{LinearRgb, Real, V3};
+use crate::math::{LinearRgb, Real, V3, gamma};
 use crate::scene::ShadingModel;
 use crate::shading::{Falloff, phong_lobe, reflect};
 
@@ -40,8 +41,11 @@ pub fn reflected_light(
         surfaces,
     });
     for light in &frame.lights {
-        aim_at_light(frame, light, mirrors, surfaces, shadows);
+        aim_at_light(frame, light, mirrors, (rays, surfaces), shadows);
         shadows.occluded = Places::EMPTY;
+        if frame.shadows {
+            relief::shadow_by_relief(frame, surfaces, shadows, counters);
+        }
         if frame.shadows && !shadows.lit.is_empty() {
             any_hits(frame, rays.count, shadows, counters);
         }
@@ -61,13 +65,14 @@ pub fn aim_at_light(
     frame: &Frame<'_>,
     light: &FrameLight,
     mirrors: Mirrors,
-    surfaces: &Surfaces,
+    (rays, surfaces): (&Rays, &Surfaces),
     shadows: &mut Shadows,
 ) {
     frame.level.run_or_plain(AimAtLight {
         frame,
         light,
         mirrors,
+        rays,
         surfaces,
         shadows,
     });
@@ -100,6 +105,7 @@ struct AimAtLight<'a> {
     frame: &'a Frame<'a>,
     light: &'a FrameLight,
     mirrors: Mirrors,
+    rays: &'a Rays,
     surfaces: &'a Surfaces,
     shadows: &'a mut Shadows,
 }
@@ -128,8 +134,16 @@ impl Kernel for AimAtLight<'_> {
                 let light = arriving(self.light, p);
                 lit = lit & light.arrives;
                 lit = lit & n_geo.dot(light.wi).gt(zero) & n_shade.dot(light.wi).gt(zero);
-                let bound = from.bound.get(simd, group);
-                let origin = offset_by_bound(p, bound, n_geo, light.wi);
+                let mut bound = from.bound.get(simd, group);
+                let mut base = p;
+                if material.mapping.searches() {
+                    let sunk = from.relief.sunk.get(simd, group);
+                    let wo = -get3(simd, &self.rays.lanes.dir, group);
+                    let way_out = relief::way_out((sunk, n_geo), wo, light.wi, run.kind.smooth);
+                    base = p + way_out;
+                    bound = bound + way_out.abs().dot(n_geo.abs()) * zero.splat(gamma(8));
+                }
+                let origin = offset_by_bound(base, bound, n_geo, light.wi);
                 set3(&mut to.rays.origin, group, lit, origin);
                 set3(&mut to.rays.dir, group, lit, light.wi);
                 set(&mut to.rays.t_max, group, lit, light.distance * LIGHT_END);

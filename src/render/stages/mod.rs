@@ -10,6 +10,7 @@ pub mod bounce;
 pub mod camera;
 pub mod film;
 pub mod light;
+pub mod relief;
 pub mod surface;
 pub mod trace;
 
@@ -77,6 +78,24 @@ pub struct Run {
     pub places: Places,
 }
 
+/// What lights want to know of points that a search found on a relief. Read only where a material's mapping
+/// searches; what other places hold means nothing.
+#[derive(Debug)]
+pub struct ReliefPoints {
+    /// How far under the triangle's plane each lies, along the geometric normal.
+    pub sunk: Column,
+    /// Steps of the search.
+    pub steps: Column,
+    /// Texture coordinates found.
+    pub uv: [Column; 2],
+    /// Smooth normals before the maps, on the front side.
+    pub n_smooth: Column3,
+    /// Gradients of u.
+    pub grad_u: Column3,
+    /// Gradients of v.
+    pub grad_v: Column3,
+}
+
 /// Surface points of one bounce.
 #[derive(Debug)]
 pub struct Surfaces {
@@ -94,6 +113,8 @@ pub struct Surfaces {
     pub diffuse: Column3,
     /// Reflected light.
     pub reflected: Column3,
+    /// Points on reliefs.
+    pub relief: ReliefPoints,
 }
 
 /// Shadow rays of one light.
@@ -154,6 +175,14 @@ impl Default for Scratch {
                     n_shade: ZEROS,
                     diffuse: ZEROS,
                     reflected: ZEROS,
+                    relief: ReliefPoints {
+                        sunk: Column::splat(0.0),
+                        steps: Column::splat(0.0),
+                        uv: [Column::splat(0.0); 2],
+                        n_smooth: ZEROS,
+                        grad_u: ZEROS,
+                        grad_v: ZEROS,
+                    },
                 },
                 shadows: Shadows {
                     rays: RayLanes::none(),

@@ -34,6 +34,11 @@ pub fn mapped_surfaces(
             run,
             surfaces,
         });
+        if frame.materials[run.material].mapping.searches() {
+            let steps = &surfaces.relief.steps;
+            let taken = run.places.iter().map(|place| f64::from(steps.0[place]));
+            counters.relief_steps += taken.sum::<f64>() as u64;
+        }
     }
 }
 
@@ -122,6 +127,8 @@ impl Kernel for MapRun<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let material = &self.frame.materials[self.run.material];
+        let searches =
+            self.run.kind.parts == SurfaceParts::Gradients && material.mapping.searches();
         let mut last = None;
         for group in self.run.places.groups::<S>() {
             let lane = self.run.places.bits::<S>(group).trailing_zeros() as usize;
@@ -130,7 +137,7 @@ impl Kernel for MapRun<'_> {
             let barycentrics = (self.hits.u.get(simd, group), self.hits.v.get(simd, group));
             let wo = -get3(simd, &self.rays.lanes.dir, group);
             let mut s = surface_on(&facet, barycentrics, wo, self.run.kind);
-            let diffuse = perturb(material, self.run.kind.parts, &mut s);
+            let diffuse = perturb(material, self.run.kind.parts, &mut s, mask);
             // Perturbed on the front side; an eye behind it sees the other side of the same relief.
             let from_behind = s.wo.dot(s.n_geo).lt(Wide::new(simd, 0.0));
             let n_geo = V3::select(from_behind, -s.n_geo, s.n_geo);
@@ -141,6 +148,16 @@ impl Kernel for MapRun<'_> {
             set3(&mut to.n_geo, group, mask, n_geo);
             set3(&mut to.n_shade, group, mask, n_shade);
             set_rgb(&mut to.diffuse, group, mask, diffuse);
+            if searches {
+                let to = &mut to.relief;
+                set(&mut to.sunk, group, mask, s.sunk);
+                set(&mut to.steps, group, mask, s.steps);
+                set(&mut to.uv[0], group, mask, s.uv.x);
+                set(&mut to.uv[1], group, mask, s.uv.y);
+                set3(&mut to.n_smooth, group, mask, s.n_smooth);
+                set3(&mut to.grad_u, group, mask, s.grad_u);
+                set3(&mut to.grad_v, group, mask, s.grad_v);
+            }
         }
     }
 }
@@ -177,9 +194,10 @@ pub fn perturb<F: crate::math::Real>(
     material: &FrameMaterial<'_>,
     parts: SurfaceParts,
     s: &mut SurfaceInteraction<F>,
+    wanted: F::Mask,
 ) -> LinearRgb<F> {
     if parts == SurfaceParts::Gradients {
-        material.mapping.apply(s);
+        material.mapping.apply(s, wanted);
     }
     let kd = LinearRgb::splat(s.uv.x, material.kd);
     match &material.albedo {

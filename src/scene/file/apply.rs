@@ -71,4 +71,10 @@ fn apply_mapping(keys: &MappingKeys, mapping: &mut MappingSettings) {
     put(&mut mapping.use_height, keys.use_height);
     put(&mut mapping.use_normal, keys.use_normal);
     put(&mut mapping.use_parallax, keys.use_parallax);
+    let search = &mut mapping.search;
+    put(&mut search.layers, keys.layers);
+    put(&mut search.min_layers, keys.min_layers);
+    put(&mut search.bisections, keys.bisections);
+    put(&mut search.iterations, keys.iterations);
+    put(&mut search.self_shadow, keys.self_shadow);
 }

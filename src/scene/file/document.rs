@@ -101,6 +101,16 @@ pub(super) struct MappingKeys {
     pub use_normal: Option<bool>,
     /// `use_parallax`.
     pub use_parallax: Option<bool>,
+    /// `layers`.
+    pub layers: Option<u32>,
+    /// `min_layers`.
+    pub min_layers: Option<u32>,
+    /// `bisections`.
+    pub bisections: Option<u32>,
+    /// `iterations`.
+    pub iterations: Option<u32>,
+    /// `self_shadow`.
+    pub self_shadow: Option<bool>,
 }
 
 /// Which materials of the model an entry means.

@@ -10,7 +10,7 @@ use super::parse_light::lights;
 use super::parse_material::materials;
 use super::section::{Item, Limits, Section};
 use crate::scene::{Background, ShadingModel};
-use crate::surface::mapping::{Derivative, Lookup, Method};
+use crate::surface::mapping::{Derivative, Lookup, Method, SearchSettings};
 
 /// Most columns or rows of a picture.
 const MAX_SIDE: u32 = 65_536;
@@ -187,6 +187,15 @@ fn mapping(root: &mut Section<'_>) -> Read<MappingKeys> {
         use_height: table.read("use_height", Item::boolean)?,
         use_normal: table.read("use_normal", Item::boolean)?,
         use_parallax: table.read("use_parallax", Item::boolean)?,
+        layers: table.read("layers", |x| x.integer(1, SearchSettings::MAX_LAYERS))?,
+        min_layers: table.read("min_layers", |x| x.integer(1, SearchSettings::MAX_LAYERS))?,
+        bisections: table.read("bisections", |x| {
+            x.integer(0, SearchSettings::MAX_BISECTIONS)
+        })?,
+        iterations: table.read("iterations", |x| {
+            x.integer(1, SearchSettings::MAX_ITERATIONS)
+        })?,
+        self_shadow: table.read("self_shadow", Item::boolean)?,
     };
     table.finish()?;
     Ok(keys)

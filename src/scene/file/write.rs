@@ -193,5 +193,11 @@ fn mapping(text: &mut Text, view: &SceneView<'_>) -> Result<(), SaveError> {
     text.raw("use_height", mapping.use_height);
     text.raw("use_normal", mapping.use_normal);
     text.raw("use_parallax", mapping.use_parallax);
+    let search = &mapping.search;
+    text.raw("layers", search.layers);
+    text.raw("min_layers", search.min_layers);
+    text.raw("bisections", search.bisections);
+    text.raw("iterations", search.iterations);
+    text.raw("self_shadow", search.self_shadow);
     Ok(())
 }

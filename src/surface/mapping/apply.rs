@@ -1,8 +1,10 @@
 //! The one door through which maps change a surface.
 
+use super::relief::{Found, Layers, Refinement, ReliefField, cone_steps, exact, iterate, march};
 use super::{BoundHeight, BoundNormal, Derivative, Lookup, MappingSettings, Method};
-use crate::math::{Real, V2, V3};
+use crate::math::{Real, V2, V3, gamma};
 use crate::surface::SurfaceInteraction;
+use crate::texture::{ConeMap, HeightPyramid};
 
 /// Below this cosine between normal and view, plain parallax does not shift: the division by it would
 /// throw the coordinate more than 10⁴ heights away.
@@ -17,6 +19,10 @@ pub struct MaterialMaps<'a> {
     pub normal: Option<BoundNormal<'a>>,
     /// Slopes in red and green.
     pub slope: Option<BoundNormal<'a>>,
+    /// Extremes of the heights, for the exact walk and for relief that shadows itself.
+    pub pyramid: Option<&'a HeightPyramid>,
+    /// Cones over the heights, for relaxed cone stepping.
+    pub cones: Option<&'a ConeMap>,
 }
 
 /// How texture coordinates move.
@@ -25,6 +31,16 @@ enum Shift<'a> {
     Stay,
     Parallax(BoundHeight<'a>),
     Limited(BoundHeight<'a>),
+    Search(Search<'a>),
+}
+
+/// A search along the view ray.
+#[derive(Debug, Clone, Copy)]
+enum Search<'a> {
+    Iterate(BoundHeight<'a>, u32),
+    March(BoundHeight<'a>, Layers, Refinement),
+    Cones(BoundHeight<'a>, &'a ConeMap, [u32; 2]),
+    Exact(ReliefField<'a>),
 }
 
 /// How the normal tilts.
@@ -43,6 +59,7 @@ enum Tilt<'a> {
 pub struct MaterialMapping<'a> {
     shift: Shift<'a>,
     tilt: Tilt<'a>,
+    self_shadow: Option<ReliefField<'a>>,
 }
 
 impl<'a> MaterialMapping<'a> {
@@ -50,6 +67,7 @@ impl<'a> MaterialMapping<'a> {
     pub const NONE: Self = Self {
         shift: Shift::Stay,
         tilt: Tilt::Keep,
+        self_shadow: None,
     };
 
     /// What `settings` ask of a material with these maps. A method whose map is missing or switched off
@@ -68,39 +86,50 @@ impl<'a> MaterialMapping<'a> {
             Derivative::Central => Tilt::Central(h),
         });
         let normal = normal.map_or(Tilt::Keep, Tilt::Normal);
+        let tilted = |tilt| Self { tilt, ..Self::NONE };
         match settings.method {
             Method::None => Self::NONE,
-            Method::Bump => Self {
-                shift: Shift::Stay,
-                tilt: bump,
-            },
+            Method::Bump => tilted(bump),
             Method::Slope => {
-                let tilt = slope.map_or_else(
-                    || tilting_height.map_or(Tilt::Keep, Tilt::Central),
-                    Tilt::Slope,
-                );
-                Self {
-                    shift: Shift::Stay,
-                    tilt,
-                }
+                let central = || tilting_height.map_or(Tilt::Keep, Tilt::Central);
+                tilted(slope.map_or_else(central, Tilt::Slope))
             }
-            Method::Normal => Self {
-                shift: Shift::Stay,
-                tilt: normal,
-            },
-            Method::Parallax | Method::ParallaxLimited => {
-                let shift = match height.filter(|_| settings.use_parallax) {
-                    None => Shift::Stay,
-                    Some(h) if settings.method == Method::Parallax => Shift::Parallax(h),
-                    Some(h) => Shift::Limited(h),
-                };
+            Method::Normal => tilted(normal),
+            method => {
+                let shift = height
+                    .filter(|_| settings.use_parallax)
+                    .and_then(|h| Shift::choose(method, settings, h, maps));
                 let tilt = match (settings.lookup, normal) {
                     (Lookup::Normal, Tilt::Normal(_)) => normal,
                     _ => bump,
                 };
-                Self { shift, tilt }
+                let self_shadow = match (shift, height, maps.pyramid) {
+                    (Some(Shift::Search(_)), Some(height), Some(pyramid))
+                        if settings.search.self_shadow =>
+                    {
+                        ReliefField::new(height, pyramid)
+                    }
+                    _ => None,
+                };
+                Self {
+                    shift: shift.unwrap_or(Shift::Stay),
+                    tilt,
+                    self_shadow,
+                }
             }
         }
+    }
+
+    /// The relief that shadows itself, if it does.
+    #[must_use]
+    pub const fn self_shadow(&self) -> Option<&ReliefField<'a>> {
+        self.self_shadow.as_ref()
+    }
+
+    /// Whether the place that the eye sees is searched for.
+    #[must_use]
+    pub const fn searches(&self) -> bool {
+        matches!(self.shift, Shift::Search(_))
     }
 
     /// Whether any map is read; if not, no texture coordinate is needed for mapping.
@@ -115,11 +144,11 @@ impl<'a> MaterialMapping<'a> {
         !matches!(self.shift, Shift::Stay)
     }
 
-    /// Bilinear look-ups that one point costs.
+    /// Bilinear look-ups that one point costs, beside the steps of a search.
     #[must_use]
     pub const fn fetches_per_point(&self) -> u64 {
         let shift = match self.shift {
-            Shift::Stay => 0,
+            Shift::Stay | Shift::Search(_) => 0,
             Shift::Parallax(_) | Shift::Limited(_) => 1,
         };
         let tilt = match self.tilt {
@@ -132,13 +161,17 @@ impl<'a> MaterialMapping<'a> {
 
     /// Moves the texture coordinate and tilts `n_shade` of a point, or of one in each lane. It must have
     /// texture coordinates and lie on this material. Normals stay on the front side's terms; facing the eye
-    /// is decided later.
+    /// is decided later. Searches leave out points that are not `wanted`.
     #[inline(always)]
-    pub fn apply<F: Real>(&self, s: &mut SurfaceInteraction<F>) {
+    pub fn apply<F: Real>(&self, s: &mut SurfaceInteraction<F>, wanted: F::Mask) {
         match &self.shift {
             Shift::Stay => {}
             Shift::Parallax(h) => s.uv = parallax(h, s),
             Shift::Limited(h) => s.uv = parallax_limited(h, s),
+            Shift::Search(search) => {
+                let found = search.run(s, wanted);
+                move_to(s, &found);
+            }
         }
         match &self.tilt {
             Tilt::Keep => {}
@@ -148,6 +181,71 @@ impl<'a> MaterialMapping<'a> {
             Tilt::Slope(n) => s.n_shade = slope_mapped(n, s),
         }
     }
+}
+
+impl<'a> Shift<'a> {
+    /// How a method moves texture coordinates over these heights; `None` if it lacks a map.
+    fn choose(
+        method: Method,
+        settings: &MappingSettings,
+        height: BoundHeight<'a>,
+        maps: &MaterialMaps<'a>,
+    ) -> Option<Self> {
+        let search = &settings.search;
+        let layers = Layers::fixed(search.layers);
+        let bisection = Refinement::Bisection(search.bisections);
+        Some(Self::Search(match method {
+            Method::None | Method::Bump | Method::Slope | Method::Normal => return None,
+            Method::Parallax => return Some(Self::Parallax(height)),
+            Method::ParallaxLimited => return Some(Self::Limited(height)),
+            Method::Iterative => Search::Iterate(height, search.iterations),
+            Method::Steep => Search::March(height, layers, Refinement::None),
+            Method::Occlusion => {
+                let layers = Layers {
+                    fewest: search.min_layers.min(search.layers),
+                    most: search.layers,
+                };
+                Search::March(height, layers, Refinement::Secant)
+            }
+            Method::Relief => Search::March(height, layers, bisection),
+            Method::RelaxedCone => {
+                Search::Cones(height, maps.cones?, [search.layers, search.bisections])
+            }
+            Method::Exact => Search::Exact(ReliefField::new(height, maps.pyramid?)?),
+        }))
+    }
+}
+
+impl Search<'_> {
+    #[inline(always)]
+    fn run<F: Real>(&self, s: &SurfaceInteraction<F>, wanted: F::Mask) -> Found<F> {
+        match self {
+            Self::Iterate(height, iterations) => iterate(height, s, *iterations),
+            Self::March(height, layers, refinement) => {
+                march(height, s, wanted, *layers, *refinement)
+            }
+            Self::Cones(height, cones, [steps, bisections]) => {
+                cone_steps((height, cones), s, wanted, *steps, *bisections)
+            }
+            Self::Exact(field) => exact(field, s, wanted),
+        }
+    }
+}
+
+/// Moves a point along its view ray to the place that a search found.
+#[inline(always)]
+fn move_to<F: Real>(s: &mut SurfaceInteraction<F>, found: &Found<F>) {
+    let zero = found.z.splat(0.0);
+    let cos = s.wo.dot(s.n_shade);
+    let distance = found.z / cos;
+    let moved = distance.is_finite() & !found.z.eq(zero);
+    let distance = F::select(moved, distance, zero);
+    let way = s.wo * distance;
+    s.p = s.p + way;
+    s.p_error = s.p_error + (way.abs() + s.p.abs()) * zero.splat(gamma(4));
+    s.sunk = -(distance * s.wo.dot(s.n_geo));
+    s.uv = found.uv;
+    s.steps = found.steps;
 }
 
 /// Where the eye really lands, by the height at the point it looks at (report 2.17, Kaneko 2001).

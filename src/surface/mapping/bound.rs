@@ -20,9 +20,45 @@ pub struct BoundHeight<'a> {
     pub scale: f32,
     /// Displacement at stored 0.
     pub offset: f32,
+    /// Smallest and largest stored height.
+    pub stored: [f32; 2],
+}
+
+impl<'a> BoundHeight<'a> {
+    /// Looks the map through for its extremes.
+    #[must_use]
+    pub fn new(map: &'a HeightMap, addressing: Addressing, scale: f32, offset: f32) -> Self {
+        Self {
+            map,
+            addressing,
+            scale,
+            offset,
+            stored: map.extremes(),
+        }
+    }
 }
 
 impl BoundHeight<'_> {
+    /// Smallest and largest displacement.
+    #[inline(always)]
+    #[must_use]
+    pub fn range(&self) -> [f32; 2] {
+        let [a, b] = self.stored.map(|h| h * self.scale + self.offset);
+        [a.min(b), a.max(b)]
+    }
+
+    /// Displacement and its derivatives by u and v, exact for the bilinear height: one look-up for both.
+    #[inline(always)]
+    #[must_use]
+    pub fn displacement_and_slope<F: Real>(&self, uv: V2<F>) -> (F, V2<F>) {
+        let st = self.addressing.st(uv);
+        let found = self.map.sample_slope(st, self.addressing.wrap);
+        (
+            found.height * self.scale + self.offset,
+            found.slope_st.times(self.addressing.scale * self.scale),
+        )
+    }
+
     /// Displacement along the normal at `uv`, internal units; positive is outwards.
     #[inline(always)]
     #[must_use]

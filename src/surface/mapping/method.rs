@@ -19,6 +19,18 @@ pub enum Method {
     Parallax,
     /// The same without the division that runs away at grazing angles (report 2.18).
     ParallaxLimited,
+    /// Parallax repeated with the slope's help (Premecz 2006).
+    Iterative,
+    /// Equal layers from the top of the relief, the first sample under it (McGuire 2005).
+    Steep,
+    /// Layers, then the chord between the last two samples (Tatarchuk 2006).
+    Occlusion,
+    /// Layers, then bisection (Policarpo 2005).
+    Relief,
+    /// Steps as wide as precomputed cones allow, then bisection (Policarpo & Oliveira 2007).
+    RelaxedCone,
+    /// Cell by cell through a pyramid of extremes: no step too far (Tevs 2008).
+    Exact,
 }
 
 /// What a method gets wrong, after Szirmay-Kalos & Umenhoffer 2008.
@@ -30,6 +42,12 @@ pub enum ErrorClass {
     ShadingOnly,
     /// May miss relief.
     Unsafe,
+    /// Samples at distances: may miss what is thinner than a step.
+    Sampled,
+    /// Right but for stopping short or for features between directions looked through.
+    Conservative,
+    /// Right to rounding for the bilinear relief over a flat chart.
+    Exact,
 }
 
 impl ErrorClass {
@@ -40,6 +58,9 @@ impl ErrorClass {
             Self::Flat => "no relief at all",
             Self::ShadingOnly => "shading only: no parallax, no silhouette, no relief shadow",
             Self::Unsafe => "unsafe: may miss relief; no silhouette, no relief shadow",
+            Self::Sampled => "unsafe: may miss relief thinner than a step; no silhouette",
+            Self::Conservative => "convergent: seldom misses, may stop short; no silhouette",
+            Self::Exact => "exact for the relief over a flat chart; no silhouette",
         }
     }
 }
@@ -51,7 +72,7 @@ pub struct MethodInfo {
     pub name: &'static str,
     /// Label in the window.
     pub label: &'static str,
-    /// Number key that selects it.
+    /// Key that selects it.
     pub key: char,
     /// One sentence.
     pub summary: &'static str,
@@ -63,13 +84,19 @@ pub struct MethodInfo {
 
 impl Method {
     /// Every method in the order of the keys.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 12] = [
         Self::None,
         Self::Bump,
         Self::Slope,
         Self::Normal,
         Self::Parallax,
         Self::ParallaxLimited,
+        Self::Iterative,
+        Self::Steep,
+        Self::Occlusion,
+        Self::Relief,
+        Self::RelaxedCone,
+        Self::Exact,
     ];
 
     /// What the program says about it.
@@ -124,6 +151,54 @@ impl Method {
                 error_class: ErrorClass::Unsafe,
                 source: "Welsh 2004; report 2.18",
             },
+            Self::Iterative => MethodInfo {
+                name: "iterative",
+                label: "Iterative",
+                key: '7',
+                summary: "Repeats the parallax step along the view ray, shorter where the relief is steep.",
+                error_class: ErrorClass::Unsafe,
+                source: "Premecz 2006",
+            },
+            Self::Steep => MethodInfo {
+                name: "steep",
+                label: "Steep parallax",
+                key: '8',
+                summary: "Walks down in equal layers to the first sample under the relief.",
+                error_class: ErrorClass::Sampled,
+                source: "McGuire & McGuire 2005",
+            },
+            Self::Occlusion => MethodInfo {
+                name: "occlusion",
+                label: "Occlusion",
+                key: '9',
+                summary: "Parallax occlusion mapping: layers, more of them at grazing views, then the chord between the last two samples.",
+                error_class: ErrorClass::Sampled,
+                source: "Tatarchuk 2006",
+            },
+            Self::Relief => MethodInfo {
+                name: "relief",
+                label: "Relief search",
+                key: '0',
+                summary: "Relief mapping: layers, then bisection between the last two samples.",
+                error_class: ErrorClass::Sampled,
+                source: "Policarpo et al. 2005",
+            },
+            Self::RelaxedCone => MethodInfo {
+                name: "relaxed-cone",
+                label: "Relaxed cones",
+                key: '-',
+                summary: "Steps as wide as a precomputed map of cones allows, then bisection. The map takes seconds to make.",
+                error_class: ErrorClass::Conservative,
+                source: "Policarpo & Oliveira 2007",
+            },
+            Self::Exact => MethodInfo {
+                name: "exact",
+                label: "Exact relief",
+                key: '=',
+                summary: "Walks through a pyramid of the map's extremes to the first meeting of ray and bilinear relief, in double precision.",
+                error_class: ErrorClass::Exact,
+                source: "maximum mipmaps, Tevs et al. 2008",
+            },
         }
     }
 
@@ -142,7 +217,22 @@ impl Method {
     /// Whether it moves texture coordinates.
     #[must_use]
     pub const fn shifts_uv(self) -> bool {
-        matches!(self, Self::Parallax | Self::ParallaxLimited)
+        matches!(self, Self::Parallax | Self::ParallaxLimited) || self.searches()
+    }
+
+    /// Whether it looks for the place on the relief that the eye sees, so that lights can be asked from
+    /// there.
+    #[must_use]
+    pub const fn searches(self) -> bool {
+        matches!(
+            self,
+            Self::Iterative
+                | Self::Steep
+                | Self::Occlusion
+                | Self::Relief
+                | Self::RelaxedCone
+                | Self::Exact
+        )
     }
 }
 
@@ -182,7 +272,14 @@ impl Method {
                 normal: true,
                 slope: false,
             },
-            Self::Parallax | Self::ParallaxLimited => MethodReads {
+            Self::Parallax
+            | Self::ParallaxLimited
+            | Self::Iterative
+            | Self::Steep
+            | Self::Occlusion
+            | Self::Relief
+            | Self::RelaxedCone
+            | Self::Exact => MethodReads {
                 height: true,
                 normal: matches!(lookup, super::Lookup::Normal),
                 slope: false,

@@ -6,6 +6,7 @@
 mod apply;
 mod bound;
 mod method;
+pub mod relief;
 mod settings;
 
 pub use apply::{
@@ -13,4 +14,4 @@ pub use apply::{
 };
 pub use bound::{BoundHeight, BoundNormal};
 pub use method::{ErrorClass, Method, MethodInfo, MethodReads};
-pub use settings::{Derivative, Lookup, MappingSettings};
+pub use settings::{Derivative, Lookup, MappingSettings, SearchSettings};

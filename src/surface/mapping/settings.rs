@@ -74,6 +74,61 @@ pub struct MappingSettings {
     pub use_normal: bool,
     /// Whether parallax methods move texture coordinates.
     pub use_parallax: bool,
+    /// What searches take.
+    pub search: SearchSettings,
+}
+
+/// How far searches go. Each method reads what it has a use for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SearchSettings {
+    /// Most layers, or most cone steps, from the top of the relief to its bottom: 1…4096.
+    pub layers: u32,
+    /// Layers of `occlusion` for a view along the normal, at most `layers`: 1…4096.
+    pub min_layers: u32,
+    /// Bisections after the layers: 0…32.
+    pub bisections: u32,
+    /// Steps of `iterative`: 1…64.
+    pub iterations: u32,
+    /// Whether the relief shadows itself.
+    pub self_shadow: bool,
+}
+
+impl SearchSettings {
+    /// Most layers.
+    pub const MAX_LAYERS: u32 = 4096;
+    /// Most bisections; more than a float has bits would change nothing.
+    pub const MAX_BISECTIONS: u32 = 32;
+    /// Most steps of `iterative`.
+    pub const MAX_ITERATIONS: u32 = 64;
+}
+
+impl Default for SearchSettings {
+    fn default() -> Self {
+        Self {
+            layers: 32,
+            min_layers: 8,
+            bisections: 8,
+            iterations: 4,
+            self_shadow: true,
+        }
+    }
+}
+
+impl MappingSettings {
+    /// Whether the extremes of height maps are asked for: the exact walk, and every relief that shadows
+    /// itself.
+    #[must_use]
+    pub const fn needs_pyramid(&self) -> bool {
+        self.use_parallax
+            && (matches!(self.method, Method::Exact)
+                || self.method.searches() && self.search.self_shadow)
+    }
+
+    /// Whether cones over height maps are asked for.
+    #[must_use]
+    pub const fn needs_cones(&self) -> bool {
+        self.use_parallax && matches!(self.method, Method::RelaxedCone)
+    }
 }
 
 impl Default for MappingSettings {
@@ -87,6 +142,7 @@ impl Default for MappingSettings {
             use_height: true,
             use_normal: true,
             use_parallax: true,
+            search: SearchSettings::default(),
         }
     }
 }

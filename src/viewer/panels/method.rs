@@ -3,10 +3,10 @@
 use egui::{Button, DragValue, RichText, Slider, SliderClamping, Ui, Vec2};
 
 use super::PanelContext;
-use crate::surface::mapping::{Derivative, Lookup, MappingSettings, Method};
+use crate::surface::mapping::{Derivative, Lookup, MappingSettings, Method, SearchSettings};
 use crate::viewer::document::Document;
 use crate::viewer::theme;
-use crate::viewer::widgets::{Caption, choice_ui, reset_ui, row_ui, slider_ui};
+use crate::viewer::widgets::{Caption, Number, choice_ui, number_ui, reset_ui, row_ui, slider_ui};
 
 pub(super) fn method_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
     buttons_ui(ui, &mut panel.doc.settings.mapping.method);
@@ -30,6 +30,7 @@ pub(super) fn method_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
         Some(&original.midlevel),
     );
     switches_ui(ui, mapping);
+    search_ui(ui, method, mapping, &original.search);
     ui.add_enabled_ui(method.shifts_uv(), |ui| {
         let caption = Caption::named("Look-up", "Lookup");
         choice_ui(ui, caption, &mut mapping.lookup, &Lookup::ALL, Lookup::name);
@@ -79,6 +80,64 @@ fn about_ui(ui: &mut Ui, method: Method) {
     ui.label(info.summary);
     ui.label(RichText::new(format!("Error: {}", info.error_class.summary())).color(theme::WEAK));
     ui.label(RichText::new(format!("Source: {}", info.source)).color(theme::WEAK));
+}
+
+/// What the chosen search takes; nothing for methods that do not search.
+fn search_ui(
+    ui: &mut Ui,
+    method: Method,
+    mapping: &mut MappingSettings,
+    original: &SearchSettings,
+) {
+    let search = &mut mapping.search;
+    let count = |most: u32| Number::within(f64::from(1_u8)..=f64::from(most), 0.1);
+    let layers = count(SearchSettings::MAX_LAYERS);
+    match method {
+        Method::Iterative => number_ui(
+            ui,
+            Caption::new("Iterations"),
+            &count(SearchSettings::MAX_ITERATIONS),
+            &mut search.iterations,
+            Some(&original.iterations),
+        ),
+        Method::Steep | Method::Occlusion | Method::Relief | Method::RelaxedCone => {
+            let name = if method == Method::RelaxedCone {
+                "Cone steps"
+            } else {
+                "Layers"
+            };
+            let caption = Caption::new(name);
+            number_ui(
+                ui,
+                caption,
+                &layers,
+                &mut search.layers,
+                Some(&original.layers),
+            );
+        }
+        _ => {}
+    }
+    if method == Method::Occlusion {
+        let caption = Caption::named("Facing it", "Layers facing the surface");
+        let (value, first) = (&mut search.min_layers, &original.min_layers);
+        number_ui(ui, caption, &layers, value, Some(first));
+    }
+    if matches!(method, Method::Relief | Method::RelaxedCone) {
+        let most = f64::from(SearchSettings::MAX_BISECTIONS);
+        number_ui(
+            ui,
+            Caption::new("Bisections"),
+            &Number::within(0.0..=most, 0.1),
+            &mut search.bisections,
+            Some(&original.bisections),
+        );
+    }
+    if method.searches() {
+        ui.checkbox(&mut search.self_shadow, "Relief shadows itself")
+            .on_hover_text(
+                "Every light is followed through the relief, exactly, by a pyramid of its extremes",
+            );
+    }
 }
 
 /// One amplitude for all, or each material its own default.

@@ -75,7 +75,7 @@ fn apply(
     maps: MaterialMaps<'_>,
     mut s: SurfaceInteraction,
 ) -> SurfaceInteraction {
-    MaterialMapping::choose(&settings, &maps).apply(&mut s);
+    MaterialMapping::choose(&settings, &maps).apply(&mut s, true);
     s
 }
 
@@ -124,12 +124,12 @@ fn bump_by_central_differences_is_the_reports_normal() {
             .world_from_tangent(report::normal_from_slopes(slopes))
             .normalize();
         let maps = MaterialMaps {
-            height: Some(BoundHeight {
-                map: &map,
+            height: Some(BoundHeight::new(
+                &map,
                 addressing,
-                scale: amplitude as f32,
-                offset: -amplitude as f32,
-            }),
+                amplitude as f32,
+                -amplitude as f32,
+            )),
             ..MaterialMaps::default()
         };
         let settings = MappingSettings {
@@ -201,12 +201,12 @@ fn parallax_shifts_as_the_report_says() {
                 _ => report::parallax_limited(uv, height, view),
             };
             let maps = MaterialMaps {
-                height: Some(BoundHeight {
-                    map: &map,
+                height: Some(BoundHeight::new(
+                    &map,
                     addressing,
-                    scale: amplitude as f32,
-                    offset: (-amplitude * midlevel) as f32,
-                }),
+                    amplitude as f32,
+                    (-amplitude * midlevel) as f32,
+                )),
                 ..MaterialMaps::default()
             };
             let settings = MappingSettings {

@@ -5,6 +5,7 @@
 
 mod mapping;
 mod picture;
+mod walk;
 
 use glam::{DQuat, DVec2, DVec3, Vec2, Vec3};
 use reliefscope::geometry::triangle::{TriangleTest, Watertight};

@@ -1,0 +1,32 @@
+//! Where a view ray meets the relief over a surface point: searches that sample, and the exact walk.
+//!
+//! - `shell`: the view ray through the layer that the relief fills
+//! - `march`: fixed numbers of samples, and their refinements
+//! - `cones`: steps as wide as a map of cones allows
+//! - `walk`, `axis`: cell by cell through a pyramid of extremes, exact
+//! - `exact`: the walk for surface points, for the eye and for lights
+
+mod axis;
+mod cones;
+mod exact;
+mod march;
+mod shell;
+mod walk;
+
+use crate::math::V2;
+
+pub use cones::cone_steps;
+pub use exact::{exact, is_shadowed};
+pub use march::{Layers, Refinement, iterate, march};
+pub use walk::{ReliefField, ReliefRay, Walk};
+
+/// What a search came to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Found<F = f32> {
+    /// Texture coordinate seen.
+    pub uv: V2<F>,
+    /// Displacement along the normal of the place on the view ray, internal units.
+    pub z: F,
+    /// Height samples taken, or nodes walked.
+    pub steps: F,
+}
