@@ -141,6 +141,9 @@ pub(super) struct ProbeArgs {
     /// Column and row, from 0 at the top left
     #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
     pub pixel: [u32; 2],
+    /// Draw the cut through the relief along the pixel's view ray, with every method on it
+    #[arg(long, value_name = "FILE.svg", conflicts_with = "json")]
+    pub svg: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,

@@ -39,6 +39,9 @@ pub(super) enum CliError {
         /// Columns and rows of the picture.
         size: [u32; 2],
     },
+    /// There is no relief to draw.
+    #[error("--svg: {0}")]
+    NoProfile(#[from] crate::render::NoProfile),
     /// Something cannot be timed.
     #[error(transparent)]
     Bench(#[from] crate::measure::bench::BenchError),

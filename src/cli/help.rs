@@ -64,6 +64,7 @@ without area are also counted as `degenerate` and are not traced.";
 pub(super) const PROBE_EXAMPLES: &str = "\
 Examples:
   reliefscope probe wall --pixel 640,360
+  reliefscope probe wall --pixel 640,360 --method parallax --svg cut.svg
   reliefscope probe scene.toml --size 320x180 --pixel 10,20 --method parallax --json";
 
 /// Behind `bench -h`.

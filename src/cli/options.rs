@@ -67,6 +67,8 @@ pub(super) struct ProbeOptions {
     pub scene: SceneOptions,
     /// Column and row.
     pub pixel: [u32; 2],
+    /// Where to draw the cut instead.
+    pub svg: Option<PathBuf>,
     /// JSON instead of text.
     pub json: bool,
 }
@@ -135,6 +137,7 @@ impl ProbeArgs {
         ProbeOptions {
             scene: self.scene.check(),
             pixel: self.pixel,
+            svg: self.svg,
             json: self.json,
         }
     }

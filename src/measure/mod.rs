@@ -2,8 +2,10 @@
 //! of pictures, benchmarks.
 
 pub mod bench;
+pub mod drawing;
 pub mod metrics;
 mod picture;
+pub mod profile_drawing;
 pub mod report_equations;
 
 pub use picture::{picture_from_image, read_picture};

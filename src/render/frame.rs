@@ -75,6 +75,8 @@ pub struct Frame<'a> {
     pub background: Background,
     /// Unit direction of the gradient's top.
     pub up: Vec3,
+    /// Internal units per world unit.
+    pub scale: f64,
 }
 
 impl<'a> Frame<'a> {
@@ -100,6 +102,7 @@ impl<'a> Frame<'a> {
             shadows: settings.shading.shadows,
             max_bounces: settings.shading.max_bounces,
             background: settings.shading.background,
+            scale: scene.normalization.scale,
             up: settings.camera.up.normalize_or(glam::DVec3::Z).as_vec3(),
         }
     }

@@ -135,22 +135,11 @@ pub enum Visibility {
 /// Runs the very stages that render tiles, so its colour is the film's first sample to the bit.
 #[must_use]
 pub fn probe(snapshot: &Snapshot, pixel: [u32; 2]) -> Option<PixelStory> {
-    let [x, y] = pixel;
-    if x >= snapshot.size[0] || y >= snapshot.size[1] {
-        return None;
-    }
     let frame = Frame::new(snapshot);
     let Scratch {
         mut hits, mut work, ..
     } = Scratch::default();
-    let mut active = Places::EMPTY;
-    active.insert(0);
-    let pixels = Pixels {
-        corner: pixel,
-        stride: 1,
-        active,
-    };
-    camera::camera_rays(&frame, &pixels, 0, &mut work.rays);
+    aim(&frame, snapshot, pixel, &mut work.rays)?;
     work.radiance = [Column::splat(0.0); 3];
     work.rays.count = 1;
     let mut bounces = Vec::new();
@@ -173,6 +162,40 @@ pub fn probe(snapshot: &Snapshot, pixel: [u32; 2]) -> Option<PixelStory> {
         color,
         srgb8: srgb8_from_linear(color),
     })
+}
+
+/// Puts the ray through the pixel's centre in the first place; `None` outside the picture.
+fn aim(
+    frame: &Frame<'_>,
+    snapshot: &Snapshot,
+    pixel: [u32; 2],
+    rays: &mut stages::Rays,
+) -> Option<()> {
+    let [x, y] = pixel;
+    if x >= snapshot.size[0] || y >= snapshot.size[1] {
+        return None;
+    }
+    let mut active = Places::EMPTY;
+    active.insert(0);
+    let pixels = Pixels {
+        corner: pixel,
+        stride: 1,
+        active,
+    };
+    camera::camera_rays(frame, &pixels, 0, rays);
+    Some(())
+}
+
+/// The ray through a pixel's centre and what it hits; `None` outside the picture.
+pub(super) fn first_hit(
+    frame: &Frame<'_>,
+    snapshot: &Snapshot,
+    pixel: [u32; 2],
+) -> Option<(Ray, Option<Hit>)> {
+    let mut work = Scratch::default().work;
+    aim(frame, snapshot, pixel, &mut work.rays)?;
+    let ray = work.rays.lanes.ray(0);
+    Some((ray, nearest(frame, &ray, f32::INFINITY)))
 }
 
 /// The colour in the first place.

@@ -16,11 +16,12 @@ use super::panels::{self, Action, PanelContext, UiState};
 use super::picking::Projection;
 use super::preferences::Preferences;
 use super::status::{self, Progress, Status};
+use super::story::{Story, story_ui};
 use super::toasts::Toasts;
 use super::viewport::{self, Framebuffer, ViewportClick};
 use super::worker::{FirstPass, Refinement, RenderNote, RenderRequest, RenderWorker};
 use super::{ViewOptions, light_markers, loading, theme, windows};
-use crate::render::{Progressive, Snapshot, probe};
+use crate::render::{Progressive, Snapshot};
 use crate::scene::built_in::SCENES;
 use crate::scene::file::{SceneView, write_scene};
 use crate::scene::{LoadError, LoadedScene};
@@ -384,7 +385,7 @@ impl ViewerApp {
                 size: self.size,
             };
             let pixel = Projection::new(&doc.settings.camera, rect).pixel(pos, self.size);
-            self.state.story = probe(&snapshot, pixel).map(|story| story.to_string());
+            self.state.story = Story::of(&snapshot, pixel);
         }
     }
 
@@ -442,7 +443,7 @@ impl ViewerApp {
 
     fn overlays_ui(&mut self, ctx: &egui::Context, window: Rect) {
         windows::help_ui(ctx, &mut self.state.help);
-        windows::story_ui(ctx, &mut self.state.story);
+        story_ui(ctx, &mut self.state.story);
         self.toasts.show_ui(ctx, status::HEIGHT);
         self.loading_ui(ctx);
         windows::drop_hint_ui(ctx, window);

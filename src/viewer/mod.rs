@@ -25,6 +25,7 @@ pub mod panels;
 mod picking;
 mod preferences;
 pub mod status;
+pub mod story;
 mod theme;
 mod toasts;
 mod viewport;

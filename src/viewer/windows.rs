@@ -1,6 +1,6 @@
 //! Small windows over the picture: keys and mouse, a pixel's story, and what can be dropped.
 
-use egui::{Align2, Color32, FontId, Grid, Id, LayerId, Order, Rect, RichText, ScrollArea, Window};
+use egui::{Align2, Color32, FontId, Grid, Id, LayerId, Order, Rect, Window};
 
 use super::commands::{self, Group};
 use super::theme;
@@ -34,7 +34,7 @@ pub fn help_ui(ctx: &egui::Context, open: &mut bool) {
 }
 
 /// Whether Escape was pressed, which closes small windows.
-fn escaped(ctx: &egui::Context) -> bool {
+pub fn escaped(ctx: &egui::Context) -> bool {
     ctx.input(|input| input.key_pressed(egui::Key::Escape))
 }
 
@@ -54,31 +54,6 @@ fn keys_ui(ui: &mut egui::Ui) {
                 }
             }
         });
-}
-
-/// A pixel's story; closing the window forgets it.
-pub fn story_ui(ctx: &egui::Context, story: &mut Option<String>) {
-    let Some(text) = story else { return };
-    let mut open = !escaped(ctx);
-    Window::new("Pixel's story")
-        .open(&mut open)
-        .default_size([520.0, 420.0])
-        .default_pos([20.0, 20.0])
-        .vscroll(false)
-        .show(ctx, |ui| {
-            if ui.button("Copy").clicked() {
-                ctx.copy_text(text.clone());
-            }
-            ScrollArea::both()
-                .auto_shrink([false, false])
-                .show(ui, |ui| {
-                    let label = RichText::new(text.as_str()).monospace();
-                    ui.add(egui::Label::new(label).extend().selectable(true));
-                });
-        });
-    if !open {
-        *story = None;
-    }
 }
 
 /// Tells that a file held over the window can be dropped.

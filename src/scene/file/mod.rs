@@ -22,7 +22,7 @@ mod write_material;
 
 pub use overrides::{OverrideError, apply_overrides};
 pub use read::read_scene;
-pub use write::{SaveError, SceneView, write_scene};
+pub use write::{SaveError, SceneView, write_scene, write_whole};
 
 /// Checks that a picture's columns and rows are in a sane range.
 ///

@@ -66,7 +66,7 @@ pub enum SaveError {
 /// [`SaveError`] if a number is not finite, a path is not UTF-8, or the system refuses.
 pub fn write_scene(path: &Path, view: &SceneView<'_>) -> Result<(), SaveError> {
     let text = scene_text(view, folder(path))?;
-    save(path, text.as_bytes()).map_err(|source| SaveError::Io {
+    write_whole(path, text.as_bytes()).map_err(|source| SaveError::Io {
         path: path.to_owned(),
         source,
     })
@@ -105,7 +105,11 @@ pub(super) fn path_text(path: &Path, base: &Path) -> Result<String, SaveError> {
     text.ok_or(SaveError::NotUtf8(seen))
 }
 
-fn save(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+/// Writes a file whole: into a temporary one beside it, which then takes its name.
+///
+/// # Errors
+/// The system's; what was there before stays.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let mut file = temporary_beside(path)?;
     file.write_all(bytes)?;
     file.as_file().sync_all()?;

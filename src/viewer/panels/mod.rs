@@ -45,7 +45,7 @@ pub struct UiState {
     /// Worker threads asked for, 0 for one per core.
     pub threads: usize,
     /// The pixel's story on show.
-    pub story: Option<String>,
+    pub story: Option<crate::viewer::story::Story>,
 }
 
 /// Something that a section cannot do by itself.

@@ -36,6 +36,12 @@ impl Layers {
         }
     }
 
+    /// [`Self::at`] for one point.
+    #[must_use]
+    pub fn count(self, cos: f32) -> f32 {
+        self.at(cos)
+    }
+
     /// Whole layers at this cosine between view and normal.
     #[inline(always)]
     fn at<F: Real>(self, cos: F) -> F {
