@@ -1,7 +1,8 @@
 //! How far a picture or a number is from the truth, and how long it took: the report's equations, distances
-//! of pictures, benchmarks.
+//! of pictures, benchmarks, and how a window feels.
 
 pub mod bench;
+pub mod feel;
 pub mod metrics;
 mod picture;
 pub mod report_equations;

@@ -2,7 +2,7 @@
 
 use egui::{
     ColorImage, Event, Modifiers, MouseWheelUnit, PointerButton, Rect, Response, Role, Sense,
-    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2,
+    Shape, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, layers::ShapeIdx, pos2,
 };
 use std::sync::Arc;
 
@@ -73,11 +73,12 @@ impl Framebuffer {
         self.frames += 1;
     }
 
-    /// Paints the last frame over the rectangle, stretched while the next size is on its way.
-    pub fn paint(&self, ui: &Ui, rect: Rect) {
+    /// Paints the last frame over the rectangle, in the place kept for it, stretched while the next size is on
+    /// its way.
+    pub fn paint(&self, ui: &Ui, place: ShapeIdx, rect: Rect) {
         if let Some(texture) = &self.texture {
-            let painter = ui.painter();
-            painter.image(texture.id(), rect, self.uv(), egui::Color32::WHITE);
+            let image = Shape::image(texture.id(), rect, self.uv(), egui::Color32::WHITE);
+            ui.painter().set(place, image);
         }
     }
 

@@ -1,6 +1,6 @@
 //! How long the parts of a picture take, and how that grows. Nothing is timed before it is checked.
 //!
-//! - `frame`: a frame's parts, as the window meets them
+//! - `frame`: a frame's parts, as the window meets them; `stages`: where its passes spend their time
 //! - `trace`: rays of one kind, alone
 //! - `growth`: frames against the size of the mesh (`grid`), lights, mirrors and pixels
 //! - `ray_file`: rays and triangles in a file, so that another tracer can do the same work
@@ -14,6 +14,7 @@ mod growth;
 mod machine;
 pub mod ray_file;
 mod spread;
+mod stages;
 mod trace;
 
 pub use check::{BenchError, scalar_twin};
@@ -22,6 +23,7 @@ pub use grid::grid_scene;
 pub use growth::{Growth, GrowthPoint, MeshCost, Study};
 pub use machine::Machine;
 pub use spread::Spread;
+pub use stages::StageTimes;
 pub use trace::{Answers, RayRace, RaySpeed};
 
 /// A pool of that many threads; 0 means one per core.

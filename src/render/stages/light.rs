@@ -7,8 +7,8 @@ use super::super::material::FrameMaterial;
 use super::super::{Counters, Frame};
 use super::trace::any_hits;
 use super::{
-    Column, Mirrors, PLACES, Places, Rays, Shadows, Surfaces, get_rgb, get3, groups, set, set_rgb,
-    set3,
+    Column, Mirrors, PLACES, Places, Rays, Shadows, Stage, StageWatch, Surfaces, get_rgb, get3,
+    groups, set, set_rgb, set3,
 };
 use crate::geometry::{HitLanes, offset_by_bound};
 use crate::math::simd::{Kernel, Simd};
@@ -32,6 +32,7 @@ pub fn reflected_light(
     surfaces: &mut Surfaces,
     shadows: &mut Shadows,
     counters: &mut Counters,
+    watch: &mut impl StageWatch,
 ) {
     shadows.rays.leaving = hits.prim;
     frame.level.run_or_plain(Ambient {
@@ -43,7 +44,9 @@ pub fn reflected_light(
         aim_at_light(frame, light, mirrors, surfaces, shadows);
         shadows.occluded = Places::EMPTY;
         if frame.shadows && !shadows.lit.is_empty() {
+            watch.done(Stage::Shade);
             any_hits(frame, rays.count, shadows, counters);
+            watch.done(Stage::Trace);
         }
         frame.level.run_or_plain(AddLight {
             frame,

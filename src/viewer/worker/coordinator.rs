@@ -17,8 +17,6 @@ use super::{
 use crate::render::{PassEnd, Snapshot};
 use crate::scene::save_picture::{SaveError, write_exr, write_png};
 
-/// Milliseconds that a first pass may take: the rest of a 60 Hz interval goes to encoding and the window.
-const FIRST_PASS_MILLIS: f32 = 13.0;
 /// A stride becomes finer only when the finer pass is expected to fit with this margin, so that the
 /// resolution does not flicker during a drag.
 const FINER_MARGIN: f32 = 0.75;
@@ -265,8 +263,9 @@ impl Coordinator {
         match (job.stride, job.request.first_pass) {
             (0, FirstPass::FullResolution) | (1 | 2, _) => Some(1),
             (0, FirstPass::Adaptive) => {
+                let bits = self.shared.first_pass_millis.load(Ordering::Relaxed);
                 let limit = |stride| {
-                    FIRST_PASS_MILLIS
+                    f32::from_bits(bits)
                         * if stride < self.stride {
                             FINER_MARGIN
                         } else {
@@ -339,14 +338,18 @@ impl Coordinator {
         renderer.encode_shown_into(job.request.exposure_ev, bytes);
         let image = ColorImage::new(size, pixels);
         self.shown_at = Some(Instant::now());
-        let replaced = {
+        let is_awaited = {
             let mut outbox = lock(&self.shared.outbox);
-            outbox.frame.replace(Frame { image, stats })
+            if let Some(unseen) = outbox.frame.replace(Frame { image, stats }) {
+                outbox.spare.push(unseen.image.pixels);
+            }
+            outbox.awaited.is_some_and(|g| g <= stats.generation)
         };
-        if let Some(unseen) = replaced {
-            lock(&self.shared.outbox).spare.push(unseen.image.pixels);
+        if is_awaited {
+            self.shared.arrived.notify_one();
+        } else {
+            (self.shared.wake_window)();
         }
-        (self.shared.wake_window)();
     }
 
     fn save(&mut self, path: &Path) {
@@ -366,6 +369,7 @@ impl Coordinator {
 
     fn note(&self, note: RenderNote) {
         lock(&self.shared.outbox).notes.push(note);
+        self.shared.arrived.notify_one();
         (self.shared.wake_window)();
     }
 }
