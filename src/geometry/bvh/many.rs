@@ -302,14 +302,18 @@ impl<R: RaySource, Q: LaneQuery, A: Answers<Q>> Kernel for Many<'_, R, Q, A> {
                     left &= !set;
                     if set.count_ones() >= MIN_RAYS {
                         alone &= !set;
-                        let hull = bundle.prepare(simd, set, along, self.bvh.reach);
+                        bundle.prepare(simd, set, along, self.bvh.reach);
+                        if Q::ENDS_EARLY {
+                            bundle.find_ends(simd, &t_max);
+                        }
+                        let hull = bundle.hull(simd, self.bvh.reach);
                         self.query.start(simd, set, &t_max);
-                        self.trace(simd, first, (&bundle, &hull, set), &mut stack);
+                        self.trace(simd, first, (&mut bundle, hull, set), &mut stack);
                     }
                 }
             }
             if alone != 0 {
-                self.trace_alone(first, alone, &mut stack);
+                simd.vectorize(|| self.trace_alone(first, alone, &mut stack));
             }
         }
     }
@@ -344,7 +348,7 @@ impl<R: RaySource, Q: LaneQuery, A: Answers<Q>> Many<'_, R, Q, A> {
         &mut self,
         simd: S,
         first: usize,
-        (bundle, hull, set): (&Bundle, &Hull, RaySet),
+        (bundle, hull, set): (&mut Bundle, Hull, RaySet),
         stack: &mut Stack,
     ) {
         let bvh = self.bvh;
@@ -361,7 +365,7 @@ impl<R: RaySource, Q: LaneQuery, A: Answers<Q>> Many<'_, R, Q, A> {
     }
 
     /// Traces the rays of `set` one by one.
-    #[inline(never)]
+    #[inline(always)]
     fn trace_alone(&mut self, first: usize, set: RaySet, stack: &mut Stack) {
         for place in ones(set).map(|lane| first + lane) {
             let (ray, t_max) = self.rays.ray(place);
