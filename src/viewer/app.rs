@@ -193,7 +193,8 @@ impl ViewerApp {
             let FrameStats {
                 generation, stride, ..
             } = frame.stats;
-            self.framebuffer.show(ctx, frame, &self.worker);
+            self.framebuffer
+                .show(ctx, frame, &self.worker, self.pacing.filter());
             self.feel.show(generation, stride, self.pacing.now_secs());
         }
     }

@@ -47,10 +47,15 @@ impl Framebuffer {
         self.shown.as_deref()
     }
 
-    /// Uploads a frame and hands buffers that are free again back to the worker.
-    pub fn show(&mut self, ctx: &egui::Context, frame: Frame, worker: &RenderWorker) {
+    /// Uploads a frame, to be drawn with these options, and hands buffers that are free again back to the worker.
+    pub fn show(
+        &mut self,
+        ctx: &egui::Context,
+        frame: Frame,
+        worker: &RenderWorker,
+        options: TextureOptions,
+    ) {
         let image = Arc::new(frame.image);
-        let options = TextureOptions::LINEAR;
         match &mut self.texture {
             // A partial update of everything keeps the allocation.
             Some(texture) if texture.size() == image.size => {

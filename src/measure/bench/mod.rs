@@ -4,6 +4,7 @@
 //! - `trace`: rays of one kind, alone
 //! - `growth`: frames against the size of the mesh (`grid`), lights, mirrors and pixels
 //! - `ray_file`: rays and triangles in a file, so that another tracer can do the same work
+//! - `points`: look-ups at many points, for micro-benchmarks
 //! - `check`: what must be true before a time means anything
 //! - `spread`, `machine`: how times are told, and of what
 
@@ -12,6 +13,7 @@ mod frame;
 mod grid;
 mod growth;
 mod machine;
+pub mod points;
 pub mod ray_file;
 mod spread;
 mod stages;

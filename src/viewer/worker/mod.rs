@@ -8,6 +8,7 @@
 //! Besides `measure` this is the only room that reads a clock.
 
 mod coordinator;
+mod costs;
 
 use std::io;
 use std::path::PathBuf;
