@@ -20,6 +20,8 @@ pub(super) trait Query {
 
 /// Triangles that a bundle may test for each of its rays before it is taken apart.
 const PATIENCE: usize = 6;
+/// The same where rays are done at their first hit, so that fewer and fewer share the cost.
+const PATIENCE_FOR_ANY: usize = 3;
 
 impl Bvh {
     /// Offers the query what it may want, roughly from front to back (from back to front for rays that
@@ -35,7 +37,7 @@ impl Bvh {
         stack: &mut Stack,
         query: &mut impl Query,
     ) -> bool {
-        let mut patience = PATIENCE * rays.count();
+        let mut patience = patience_of(query) * rays.count();
         let (mut limit, _) = farthest(simd, rays, query);
         let mut next = self.root;
         stack.clear();
@@ -72,6 +74,16 @@ impl Bvh {
                 }
             };
         }
+    }
+}
+
+/// How many triangles for each ray.
+#[inline(always)]
+const fn patience_of<Q: Query>(_: &Q) -> usize {
+    if Q::ENDS_EARLY {
+        PATIENCE_FOR_ANY
+    } else {
+        PATIENCE
     }
 }
 
