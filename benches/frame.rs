@@ -5,7 +5,7 @@
 
 #![expect(clippy::print_stdout, reason = "a benchmark's figures are its output")]
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use reliefscope::measure::bench::{FrameCase, FrameTimes, Spread, scalar_twin};
@@ -20,12 +20,13 @@ const THREADS: usize = 2;
 fn main() {
     let timed = std::env::args().any(|arg| arg == "--bench");
     let size = if timed { [1280, 720] } else { [160, 90] };
-    let reference = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reference/bump.toml");
+    let reference = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reference");
     for (name, input) in [
-        ("reference plane", reference.as_path()),
-        ("wall", Path::new("wall")),
+        ("reference plane", reference.join("bump.toml")),
+        ("reference torus", reference.join("torus.toml")),
+        ("wall", PathBuf::from("wall")),
     ] {
-        let loaded = open(input, &LoadOptions::default()).expect("the input opens");
+        let loaded = open(&input, &LoadOptions::default()).expect("the input opens");
         let twin = scalar_twin(&loaded.scene);
         for method in Method::ALL {
             let mut settings = loaded.settings.clone();
@@ -57,5 +58,20 @@ fn line(times: &FrameTimes) -> String {
     ];
     let column =
         |(name, Spread { median, min, max })| format!("{name} {median:.1} ms ({min:.1}–{max:.1})");
-    columns.map(column).join("  ")
+    let (stages, counters) = (&times.stages, &times.counters);
+    let parts = [
+        ("trace", stages.trace),
+        ("perturb", stages.perturb),
+        ("shade", stages.shade),
+        ("resolve", stages.resolve),
+    ];
+    let part = |(name, spread): (&str, Spread)| format!("{name} {:.1}", spread.median);
+    format!(
+        "{}  thread-ms: {} ({:.0} % of two threads); {:.2} M rays, {:.2} M fetches",
+        columns.map(column).join("  "),
+        parts.map(part).join(" "),
+        1e2 * stages.share.median,
+        counters.rays() as f64 / 1e6,
+        counters.texture_fetches as f64 / 1e6,
+    )
 }

@@ -1,8 +1,9 @@
 //! How far a picture or a number is from the truth, and how long it took: the report's equations, distances
-//! of pictures, benchmarks.
+//! of pictures, benchmarks, and how a window feels.
 
 pub mod bench;
 pub mod drawing;
+pub mod feel;
 pub mod metrics;
 mod picture;
 pub mod profile_drawing;

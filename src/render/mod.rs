@@ -24,3 +24,4 @@ pub use progressive::{PassEnd, Progressive, Shown, Snapshot};
 pub use ray_jobs::rays_of;
 pub use ray_list::{RayKind, RayList, RayQuery};
 pub use sampling::pixel_sample;
+pub use stages::{Stage, StageWatch};

@@ -147,7 +147,13 @@ pub fn probe(snapshot: &Snapshot, pixel: [u32; 2]) -> Option<PixelStory> {
         let counters = &mut Counters::default();
         let (ray, weight) = (work.rays.lanes.ray(0), work.rays.weight.0[0]);
         trace::closest_hits(&frame, &work.rays, &mut hits, counters);
-        work.shade_hits(&frame, &hits, stages::mirrors_at(&frame, index), counters);
+        work.shade_hits(
+            &frame,
+            &hits,
+            stages::mirrors_at(&frame, index),
+            counters,
+            &mut (),
+        );
         bounces.push(one_bounce(snapshot, &frame, (&ray, weight), &work.surfaces));
         if work.rays.active.is_empty() {
             break;

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::film::{Film, Picture, lock};
-use super::stages::Scratch;
+use super::stages::{Scratch, StageWatch};
 use super::{Counters, Frame};
 use crate::math::{LinearRgb, SrgbEncoder};
 use crate::scene::{RenderSettings, Scene};
@@ -119,7 +119,7 @@ impl Progressive {
             self.previews[i].get_or_insert_with(|| Film::new(size, stride));
         }
         let film = preview.and_then(|i| self.previews[i].as_ref());
-        self.render(film.unwrap_or(&self.film), 1, stop)
+        self.render::<()>(film.unwrap_or(&self.film), 1, stop).0
     }
 
     /// Renders the next sample of every pixel; `stop` is polled before each tile. Does nothing once the
@@ -128,20 +128,33 @@ impl Progressive {
         let wanted = self.snapshot.as_ref().map_or(0, samples_wanted);
         // Tiles that a stopped pass had done already are ahead.
         let goal = (self.samples() + 1).min(wanted);
-        self.render(&self.film, goal, stop)
+        self.render::<()>(&self.film, goal, stop).0
+    }
+
+    /// [`pass`](Self::pass) to the end, with a listener in each worker that is told of its stages.
+    pub fn watched_pass<W: StageWatch + Default + Send>(&mut self) -> Vec<W> {
+        let wanted = self.snapshot.as_ref().map_or(0, samples_wanted);
+        let goal = (self.samples() + 1).min(wanted);
+        self.render(&self.film, goal, &|| false).1
     }
 
     /// Brings all tiles of a film to `goal` samples. `stop` is asked only before tiles that need one, so
     /// that passes stopped again and again still come to an end.
-    fn render(&self, film: &Film, goal: u32, stop: &(dyn Fn() -> bool + Sync)) -> PassEnd {
+    fn render<W: StageWatch + Default + Send>(
+        &self,
+        film: &Film,
+        goal: u32,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> (PassEnd, Vec<W>) {
         let Some(snapshot) = &self.snapshot else {
-            return PassEnd::Complete;
+            return (PassEnd::Complete, Vec::new());
         };
         let frame = Frame::new(snapshot);
         let coarser = self.finest().filter(|known| known.stride > film.stride);
         let next = AtomicUsize::new(0);
         let done = AtomicUsize::new(0);
-        self.pool.broadcast(|context| {
+        let watches = self.pool.broadcast(|context| {
+            let mut watch = W::default();
             // One worker per slot and one slot per worker: these locks are never waited for.
             let mut scratch = self.scratch[context.index()]
                 .lock()
@@ -152,16 +165,18 @@ impl Progressive {
                     if stop() {
                         break;
                     }
-                    tile.sample(&frame, coarser, &mut scratch);
+                    tile.sample(&frame, coarser, &mut scratch, &mut watch);
                 }
                 done.fetch_add(1, Ordering::Relaxed);
             }
+            watch
         });
-        if done.into_inner() == film.order.len() {
+        let end = if done.into_inner() == film.order.len() {
             PassEnd::Complete
         } else {
             PassEnd::Stopped
-        }
+        };
+        (end, watches)
     }
 
     /// The snapshot being rendered.

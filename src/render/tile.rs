@@ -3,7 +3,9 @@
 use super::film::Film;
 use super::sites::Sites;
 use super::stages::camera::Pixels;
-use super::stages::{self, Column, Column3, PLACES, Scratch, camera, film, trace};
+use super::stages::{
+    self, Column, Column3, PLACES, Scratch, Stage, StageWatch, camera, film, trace,
+};
 use super::{Counters, Frame};
 use crate::geometry::HitLanes;
 
@@ -58,7 +60,14 @@ impl Tile {
 
     /// Renders the next sample of every pixel. The first takes hits over from a coarser film of the same
     /// picture, if there is one.
-    pub fn sample(&mut self, frame: &Frame<'_>, coarser: Option<&Film>, scratch: &mut Scratch) {
+    pub fn sample(
+        &mut self,
+        frame: &Frame<'_>,
+        coarser: Option<&Film>,
+        scratch: &mut Scratch,
+        watch: &mut impl StageWatch,
+    ) {
+        watch.begin();
         let (index, counters) = (self.samples, &mut self.counters);
         let Scratch { hits, known, work } = scratch;
         camera::camera_rays(frame, &self.pixels, index, &mut work.rays);
@@ -80,8 +89,9 @@ impl Tile {
             }
             self.knows_hits = true;
         }
-        work.shade_hits(frame, hits, stages::mirrors_at(frame, 0), counters);
-        scratch.follow_mirrors(frame, counters);
+        watch.done(Stage::Trace);
+        work.shade_hits(frame, hits, stages::mirrors_at(frame, 0), counters, watch);
+        scratch.follow_mirrors(frame, counters, watch);
         counters.non_finite += film::add(
             frame,
             &self.pixels.active,
@@ -90,5 +100,6 @@ impl Tile {
             &mut self.sums,
         );
         self.samples += 1;
+        watch.done(Stage::Resolve);
     }
 }

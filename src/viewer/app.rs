@@ -19,8 +19,9 @@ use super::status::{self, Progress, Status};
 use super::story::{Story, story_ui};
 use super::toasts::Toasts;
 use super::viewport::{self, Framebuffer, ViewportClick};
-use super::worker::{FirstPass, Refinement, RenderNote, RenderRequest, RenderWorker};
+use super::worker::{FirstPass, FrameStats, Refinement, RenderNote, RenderRequest, RenderWorker};
 use super::{ViewOptions, light_markers, loading, theme, windows};
+use crate::measure::feel::{Feel, FeelLog};
 use crate::render::{Progressive, Snapshot};
 use crate::scene::built_in::SCENES;
 use crate::scene::file::{SceneView, write_scene};
@@ -47,6 +48,7 @@ pub struct ViewerApp {
     size: [u32; 2],
     fallback: bool,
     title: String,
+    feel: FeelLog,
 }
 
 impl ViewerApp {
@@ -58,13 +60,23 @@ impl ViewerApp {
         creation: &eframe::CreationContext<'_>,
         options: ViewOptions,
     ) -> std::io::Result<Self> {
+        let mut app = Self::empty(creation, &options)?;
+        app.open(options.input.unwrap_or_else(first_scene));
+        Ok(app)
+    }
+
+    /// The window before anything is opened in it.
+    pub(super) fn empty(
+        creation: &eframe::CreationContext<'_>,
+        options: &ViewOptions,
+    ) -> std::io::Result<Self> {
         let ctx = &creation.egui_ctx;
         theme::apply(ctx);
         let factory = Box::new(|threads| {
             let renderer = Progressive::new(threads)?;
             Ok(Box::new(renderer) as _)
         });
-        let mut app = Self {
+        Ok(Self {
             worker: RenderWorker::spawn(factory, wake(ctx))?,
             loader: Loader::new(options.normalize, wake(ctx)),
             dialogs: Dialogs::new(wake(ctx)),
@@ -83,9 +95,8 @@ impl ViewerApp {
             size: [1, 1],
             fallback: false,
             title: String::new(),
-        };
-        app.open(options.input.unwrap_or_else(first_scene));
-        Ok(app)
+            feel: FeelLog::default(),
+        })
     }
 
     /// The open scene, if the first load is done.
@@ -122,6 +133,18 @@ impl ViewerApp {
     #[must_use]
     pub fn is_loading(&self) -> bool {
         self.loader.is_loading()
+    }
+
+    /// Columns and rows of the picture.
+    #[must_use]
+    pub const fn picture_size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// What the camera's last movement felt like.
+    #[must_use]
+    pub fn feel(&self) -> Option<Feel> {
+        self.feel.feel()
     }
 
     /// The shown picture.
@@ -163,9 +186,32 @@ impl ViewerApp {
                 RenderNote::Saved(text) => self.toasts.note(text),
             }
         }
+        self.take_frame(ctx);
+    }
+
+    fn take_frame(&mut self, ctx: &egui::Context) {
         if let Some(frame) = self.worker.take_frame() {
-            self.framebuffer.show(ctx, frame, &self.worker);
+            let FrameStats {
+                generation, stride, ..
+            } = frame.stats;
+            self.framebuffer
+                .show(ctx, frame, &self.worker, self.pacing.filter());
+            self.feel.show(generation, stride, self.pacing.now_secs());
         }
+    }
+
+    /// Shows a scene with default preferences.
+    pub(super) fn adopt(&mut self, loaded: LoadedScene) {
+        self.preferences = Preferences::default();
+        self.feel = FeelLog::default();
+        self.take_scene(loaded);
+    }
+
+    fn take_scene(&mut self, loaded: LoadedScene) {
+        self.state.material = 0;
+        self.state.story = None;
+        self.title = format!("{} – Reliefscope", loaded.scene.name);
+        self.doc = Some(Document::new(loaded));
     }
 
     fn finish_load(&mut self, input: &Path, result: Result<LoadedScene, LoadError>) {
@@ -183,10 +229,7 @@ impl ViewerApp {
                 if input.is_file() {
                     self.preferences.note_opened(input);
                 }
-                self.state.material = 0;
-                self.state.story = None;
-                self.title = format!("{} – Reliefscope", loaded.scene.name);
-                self.doc = Some(Document::new(loaded));
+                self.take_scene(loaded);
             }
             Err(LoadError::Cancelled) => self.toasts.note("Loading was cancelled."),
             Err(error) => {
@@ -365,7 +408,6 @@ impl ViewerApp {
     /// The picture with everything that the mouse does in it.
     fn viewport_ui(&mut self, ui: &egui::Ui, rect: Rect) {
         let response = viewport::sense_ui(ui, rect);
-        self.framebuffer.paint(ui, rect);
         let Some(doc) = &mut self.doc else { return };
         let mut click = viewport::navigate(ui, &response, &doc.scene, &mut doc.settings.camera);
         if self.state.probe && response.clicked() {
@@ -425,6 +467,7 @@ impl ViewerApp {
             triangles: doc.map_or(0, |doc| doc.scene.facts.triangles),
             method: doc.map_or("", |doc| doc.settings.mapping.method.info().label),
             exposure_ev: doc.map_or(0.0, |doc| doc.display.exposure_ev),
+            feel: self.feel.feel(),
         };
         status::status_ui(ctx, window, &status);
     }
@@ -481,7 +524,14 @@ impl ViewerApp {
             .as_ref()
             .is_none_or(|sent| !sent.is_same(&request))
         {
-            self.worker.submit(request.clone());
+            let camera = |r: &RenderRequest| r.snapshot.settings.camera;
+            let has_moved = self.sent.as_ref().map(camera) != Some(camera(&request));
+            let millis = self.pacing.first_pass_millis();
+            self.worker.set_first_pass_millis(millis);
+            let generation = self.worker.submit(request.clone());
+            if has_moved {
+                self.feel.ask(generation, self.pacing.began_secs());
+            }
             self.sent = Some(request);
         }
     }
@@ -489,14 +539,12 @@ impl ViewerApp {
 
 impl eframe::App for ViewerApp {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.pacing.begin();
         self.collect(ctx);
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        self.pacing.wait();
         let ctx = ui.ctx().clone();
-        // A frame that came during the wait is shown now, not one picture later.
-        self.collect(&ctx);
         if !self.title.is_empty() {
             let title = std::mem::take(&mut self.title);
             ctx.send_viewport_cmd(ViewportCommand::Title(title));
@@ -507,9 +555,15 @@ impl eframe::App for ViewerApp {
         for command in commands::pressed(&ctx) {
             self.run(&ctx, command);
         }
+        // Painted last, so that it can be the picture of this very frame's camera.
+        let picture = ui.painter().add(egui::Shape::Noop);
         self.viewport_ui(ui, window);
         self.panel_ui(&ctx, window);
         self.submit();
+        let is_outdated = self.framebuffer.stats().generation != self.worker.generation();
+        self.pacing.wait(&self.worker, is_outdated);
+        self.take_frame(&ctx);
+        self.framebuffer.paint(ui, picture, window);
         self.status_ui(&ctx, window);
         self.overlays_ui(&ctx, window);
         let now = ctx.input(|input| input.time);

@@ -3,6 +3,7 @@
 //! - `app`: the frame loop: collect what the threads brought, take input, draw, send what changed
 //! - `worker`: the rendering thread
 //! - `loader`, `loading`, `dialogs`: files, on threads of their own, and how far they are
+//! - `feel`: a scripted hand, for measuring
 //! - `document`: what is open, and undo
 //! - `viewport`, `picking`, `light_markers`: the mouse in the picture
 //! - `panels`, `status`, `windows`, `toasts`, `widgets`, `color_edit`, `theme`: what is drawn over it
@@ -16,6 +17,7 @@ mod color_edit;
 pub mod commands;
 mod dialogs;
 pub mod document;
+mod feel;
 mod light_markers;
 mod loader;
 mod loading;
@@ -37,6 +39,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
 pub use app::ViewerApp;
+pub use feel::{FeelOptions, Felt, measure_feel};
 
 /// What the command line says about the window.
 #[derive(Debug, Clone, Default)]
@@ -60,13 +63,29 @@ pub enum ViewError {
     /// The window system refused.
     #[error("no window could be opened: {0}; `reliefscope render` works without one")]
     Window(String),
+    /// Somebody closed the window before everything was measured.
+    #[error("the window was closed before everything was measured")]
+    Closed,
 }
+
+/// Size of the window when it opens, points.
+const WINDOW: [u32; 2] = [1280, 720];
 
 /// Shows the window until it is closed.
 ///
 /// # Errors
 /// [`ViewError`], one line for the user, where no window can be shown.
 pub fn run(options: ViewOptions) -> Result<(), ViewError> {
+    show_window(WINDOW, |creation| {
+        Ok(Box::new(ViewerApp::new(creation, options)?))
+    })
+}
+
+/// Shows a window until it is closed.
+fn show_window(
+    size: [u32; 2],
+    app: impl FnOnce(&eframe::CreationContext<'_>) -> std::io::Result<Box<dyn eframe::App>>,
+) -> Result<(), ViewError> {
     if !has_display() {
         return Err(ViewError::NoDisplay);
     }
@@ -74,7 +93,7 @@ pub fn run(options: ViewOptions) -> Result<(), ViewError> {
         viewport: egui::ViewportBuilder::default()
             .with_title("Reliefscope")
             .with_app_id("reliefscope")
-            .with_inner_size([1280.0, 720.0])
+            .with_inner_size(size.map(|n| n as f32))
             .with_min_inner_size([480.0, 320.0])
             .with_drag_and_drop(true),
         dithering: false,
@@ -88,7 +107,7 @@ pub fn run(options: ViewOptions) -> Result<(), ViewError> {
             native,
             Box::new(move |creation| {
                 quiet.end();
-                Ok(Box::new(ViewerApp::new(creation, options)?))
+                Ok(app(creation)?)
             }),
         )
     }));

@@ -5,6 +5,7 @@ use egui::{Align2, Area, Color32, Id, Order, Rect, RichText, Ui};
 
 use super::theme;
 use super::worker::FrameStats;
+use crate::measure::feel::Feel;
 
 /// Height of the line, points.
 pub const HEIGHT: f32 = 30.0;
@@ -85,6 +86,8 @@ pub struct Status<'a> {
     pub method: &'a str,
     /// Stops.
     pub exposure_ev: f32,
+    /// What the camera's last movement felt like.
+    pub feel: Option<Feel>,
 }
 
 /// Draws the line along the bottom.
@@ -116,7 +119,12 @@ fn line_ui(ui: &mut Ui, status: &Status<'_>) {
     };
     let text = RichText::new(text).monospace().size(15.0);
     ui.label(text.strong().color(Color32::WHITE))
-        .on_hover_text("New pictures on the screen per second");
+        .on_hover_ui(|ui| {
+            ui.label("New pictures on the screen per second");
+            if let Some(feel) = &status.feel {
+                ui.label(feel_text(feel));
+            }
+        });
     item_ui(
         ui,
         &format!("{:<16}", status.progress.text()),
@@ -174,6 +182,19 @@ fn line_ui(ui: &mut Ui, status: &Status<'_>) {
             "Samples that were not finite and counted as black",
         );
     }
+}
+
+/// The last movement of the camera in words.
+fn feel_text(feel: &Feel) -> String {
+    let full = feel.rest_to_full_ms.map_or_else(String::new, |millis| {
+        format!("\nEvery pixel {millis:.0} ms after the last input")
+    });
+    format!(
+        "Last movement, {:.1} s: {:.1} views a second\n\
+         From input to picture {:.0} ms, for 95 of 100 within {:.0} ms\n\
+         Resolution 1/{} at the least{full}",
+        feel.seconds, feel.shown_per_sec, feel.wait_p50_ms, feel.wait_p95_ms, feel.coarsest
+    )
 }
 
 fn item_ui(ui: &mut Ui, text: &str, color: Color32, hint: &str) {

@@ -2,7 +2,7 @@
 
 use egui::{
     ColorImage, Event, Modifiers, MouseWheelUnit, PointerButton, Rect, Response, Role, Sense,
-    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2,
+    Shape, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, layers::ShapeIdx, pos2,
 };
 use std::sync::Arc;
 
@@ -47,10 +47,15 @@ impl Framebuffer {
         self.shown.as_deref()
     }
 
-    /// Uploads a frame and hands buffers that are free again back to the worker.
-    pub fn show(&mut self, ctx: &egui::Context, frame: Frame, worker: &RenderWorker) {
+    /// Uploads a frame, to be drawn with these options, and hands buffers that are free again back to the worker.
+    pub fn show(
+        &mut self,
+        ctx: &egui::Context,
+        frame: Frame,
+        worker: &RenderWorker,
+        options: TextureOptions,
+    ) {
         let image = Arc::new(frame.image);
-        let options = TextureOptions::LINEAR;
         match &mut self.texture {
             // A partial update of everything keeps the allocation.
             Some(texture) if texture.size() == image.size => {
@@ -73,11 +78,12 @@ impl Framebuffer {
         self.frames += 1;
     }
 
-    /// Paints the last frame over the rectangle, stretched while the next size is on its way.
-    pub fn paint(&self, ui: &Ui, rect: Rect) {
+    /// Paints the last frame over the rectangle, in the place kept for it, stretched while the next size is on
+    /// its way.
+    pub fn paint(&self, ui: &Ui, place: ShapeIdx, rect: Rect) {
         if let Some(texture) = &self.texture {
-            let painter = ui.painter();
-            painter.image(texture.id(), rect, self.uv(), egui::Color32::WHITE);
+            let image = Shape::image(texture.id(), rect, self.uv(), egui::Color32::WHITE);
+            ui.painter().set(place, image);
         }
     }
 

@@ -36,7 +36,13 @@ const DOORS: [(&str, &[&str]); 13] = [
 ];
 
 /// Only these read clocks: a picture must not depend on when it was made.
-const CLOCKS: [&str; 4] = ["measure", "cli", "viewer/worker", "viewer/pacing"];
+const CLOCKS: [&str; 5] = [
+    "measure",
+    "cli",
+    "viewer/worker",
+    "viewer/pacing",
+    "viewer/feel",
+];
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else {

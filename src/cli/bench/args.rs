@@ -48,6 +48,12 @@ pub(in crate::cli) struct BenchArgs {
     /// Write what the rays of --rays hit
     #[arg(long, value_name = "FILE", requires = "rays")]
     pub hits: Option<PathBuf>,
+    /// Drag the camera in a window, and tell how that feels, instead of timing pictures
+    #[arg(long, conflicts_with_all = ["quick", "passes", "kind", "dump_rays", "rays", "hits"])]
+    pub feel: bool,
+    /// How long to drag in each scene
+    #[arg(long, value_name = "SECONDS", requires = "feel", default_value_t = 6, value_parser = clap::value_parser!(u16).range(1..=600))]
+    pub seconds: u16,
     /// Reading
     #[command(flatten)]
     pub load: LoadArgs,

@@ -17,7 +17,10 @@ const PASSES: u16 = 7;
 /// The same in a quick table.
 const QUICK_PASSES: u16 = 3;
 
-/// One of three things.
+/// Scenes to drag in: one of many maps, one that is all triangles.
+const FEEL_SCENES: [&str; 2] = QUICK_SCENES;
+
+/// One of four things.
 #[derive(Debug)]
 pub(super) enum BenchOptions {
     /// The whole table.
@@ -26,6 +29,8 @@ pub(super) enum BenchOptions {
     Dump(DumpOptions),
     /// The speed of the rays in a file.
     Race(RaceOptions),
+    /// How the window feels.
+    Feel(FeelOptions),
 }
 
 /// The whole table.
@@ -71,6 +76,21 @@ pub(super) struct RaceOptions {
     pub json: bool,
 }
 
+/// How the window feels.
+#[derive(Debug)]
+pub(super) struct FeelOptions {
+    /// The scenes, with what is changed about them; at least one.
+    pub scenes: Vec<SceneOptions>,
+    /// Worker threads; 0 means one per core.
+    pub threads: usize,
+    /// Size of the window.
+    pub size: [u32; 2],
+    /// Length of a drag.
+    pub seconds: u16,
+    /// JSON instead of text.
+    pub json: bool,
+}
+
 impl BenchArgs {
     /// Refuses what does not go together, levels that this machine lacks, and outputs that could not be
     /// written. Chooses the level for the whole process.
@@ -80,6 +100,7 @@ impl BenchArgs {
         }
         let passes = if self.quick { QUICK_PASSES } else { PASSES };
         let passes = usize::from(self.passes.unwrap_or(passes));
+        let asked_threads = self.threads.iter().copied().max();
         let threads = threads(&self.threads);
         let size = self.size.unwrap_or(DEFAULT_SIZE);
         if let Some(rays) = self.rays {
@@ -111,13 +132,25 @@ impl BenchArgs {
         }
         let inputs = if !self.inputs.is_empty() {
             self.inputs
+        } else if self.feel {
+            FEEL_SCENES.map(PathBuf::from).into()
         } else if self.quick {
             QUICK_SCENES.map(PathBuf::from).into()
         } else {
             built_in_names().into_iter().map(PathBuf::from).collect()
         };
+        let scenes = inputs.into_iter().map(scene).collect();
+        if self.feel {
+            return Ok(BenchOptions::Feel(FeelOptions {
+                scenes,
+                threads: usize::from(asked_threads.unwrap_or(0)),
+                size,
+                seconds: self.seconds,
+                json: self.json,
+            }));
+        }
         Ok(BenchOptions::Table(TableOptions {
-            scenes: inputs.into_iter().map(scene).collect(),
+            scenes,
             size,
             threads,
             passes,

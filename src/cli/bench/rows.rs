@@ -8,8 +8,7 @@ use crate::render::RayKind;
 use crate::surface::mapping::Method;
 
 /// Over the lines of [`frame`].
-pub(super) const FRAME: &str =
-    "ms, median (least-greatest); millions of rays and of texture fetches in a full pass";
+pub(super) const FRAME: &str = "ms, median (least-greatest); trace to resolve: where a full pass spends its time, ms summed over threads, and the share of it that they explain; millions of rays and of texture fetches in it";
 /// Over the lines of [`scaling`].
 pub(super) const SCALING: &str = "full pass by threads, the scene's own method";
 /// Over the lines of [`rays`].
@@ -18,15 +17,20 @@ pub(super) const RAYS: &str =
 
 /// A scene by a method.
 pub(super) fn frame(scene: &str, method: Method, threads: usize, times: &FrameTimes) -> Row {
-    let (counters, method) = (&times.counters, method.name());
+    let (counters, stages, method) = (&times.counters, &times.stages, method.name());
     let millions = |n: u64| n as f64 / 1e6;
     let text = format!(
-        "{scene:14} {method:16} start {}  preview {}  full {}  re-shade {}  encode {}  rays {:.2}  fetches {:.2}",
+        "{scene:14} {method:16} start {}  preview {}  full {}  re-shade {}  encode {}  trace {:.2}  perturb {:.2}  shade {:.2}  resolve {:.2} ({:.0} %)  rays {:.2}  fetches {:.2}",
         ms(times.start),
         ms(times.preview),
         ms(times.full),
         ms(times.reshade),
         ms(times.encode),
+        stages.trace.median,
+        stages.perturb.median,
+        stages.shade.median,
+        stages.resolve.median,
+        1e2 * stages.share.median,
         millions(counters.rays()),
         millions(counters.texture_fetches),
     );
@@ -36,6 +40,7 @@ pub(super) fn frame(scene: &str, method: Method, threads: usize, times: &FrameTi
         "threads": threads,
         "counters": counters,
         "rays": counters.rays(),
+        "stages_share": stages.share.median,
     });
     for (name, spread) in [
         ("start", times.start),
@@ -43,6 +48,10 @@ pub(super) fn frame(scene: &str, method: Method, threads: usize, times: &FrameTi
         ("full", times.full),
         ("reshade", times.reshade),
         ("encode", times.encode),
+        ("trace", stages.trace),
+        ("perturb", stages.perturb),
+        ("shade", stages.shade),
+        ("resolve", stages.resolve),
     ] {
         put_ms(&mut value, name, spread);
     }

@@ -26,6 +26,10 @@ enum Course {
 /// [`RaySlabs::interval`](crate::geometry::RaySlabs::interval), with its rounding: that is off from
 /// the exact interval of the padded box by less than `4uS/|d|`, and the arithmetic here by less than
 /// `5uS/|d|`. Twice the padding, `32uS` instead of `16uS`, is more than the sum.
+///
+/// Rays that converge are taken from their ends, backwards: the hull of origins and directions would grow
+/// where they come together. Distances then count from the end. An end is off its ray by less than `4uS`, `S`
+/// counted from the farther of origin and end, which the padding has room for, too.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::geometry) struct Hull {
     /// For the lower and the upper plane of each axis.
@@ -71,6 +75,8 @@ impl Hull {
 pub(super) struct Extremes<S: Simd> {
     origin: [[S::f32s; 3]; 2],
     inv_dir: [[S::f32s; 3]; 2],
+    /// Largest magnitude of other coordinates.
+    farthest: S::f32s,
 }
 
 impl<S: Simd> Extremes<S> {
@@ -81,7 +87,15 @@ impl<S: Simd> Extremes<S> {
         Self {
             origin: [least, most],
             inv_dir: [least, most],
+            farthest: S::f32s::splat(simd, 0.0),
         }
+    }
+
+    /// Lets the padding reach as far as the points in `lanes`.
+    #[inline(always)]
+    pub(super) fn reach(&mut self, lanes: S::mask32s, [x, y, z]: [S::f32s; 3]) {
+        let far = self.farthest.max(x.abs()).max(y.abs()).max(z.abs());
+        self.farthest = lanes.select(far, self.farthest);
     }
 
     /// Adds those rays of a group that are in `lanes`.
@@ -101,7 +115,8 @@ impl<S: Simd> Extremes<S> {
     pub(super) fn hull(&self, simd: S, bundle: &Bundle, reach: f32) -> Hull {
         let [least, most] = least_and_most::<S>(&self.origin);
         let [mut inv_least, mut inv_most] = least_and_most::<S>(&self.inv_dir);
-        let farthest = (0..3).fold(0.0_f32, |far, i| far.max(-least[i]).max(most[i]));
+        let farthest = self.farthest.reduce_max();
+        let farthest = (0..3).fold(farthest, |far, i| far.max(-least[i]).max(most[i]));
         let padding = 2.0 * PADDING * (reach + farthest);
         let mut course = [Course::Mixed; 3];
         for axis in 0..3 {
@@ -119,7 +134,7 @@ impl<S: Simd> Extremes<S> {
             shift: [most.map(|o| o + padding), least.map(|o| o - padding)],
             inv: [inv_least, inv_most],
             course,
-            common_origin: (least == most).then_some(least),
+            common_origin: (least == most && !bundle.converge).then_some(least),
         }
     }
 }
@@ -149,6 +164,7 @@ fn closest_to_zero<S: Simd>(simd: S, bundle: &Bundle, axis: usize) -> (f32, f32)
     let (mut below, mut above) = (lowest, -lowest);
     for group in bundle.groups::<S>() {
         let inv = bundle.inv_dir[axis].load(simd, group);
+        let inv = if bundle.converge { -inv } else { inv };
         let lanes = lanes_of(simd, bundle.active, group);
         below = (lanes & inv.simd_lt(zero)).select(below.max(inv), below);
         above = (lanes & inv.simd_gt(zero)).select(above.min(inv), above);

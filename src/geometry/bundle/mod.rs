@@ -85,6 +85,11 @@ pub(super) struct Bundle {
     origin: [Floats; 3],
     dir: [Floats; 3],
     inv_dir: [Floats; 3],
+    /// Where the rays end; means something only if they converge.
+    end: [Floats; 3],
+    /// Whether they end closer together than they begin, as shadow rays to a lamp do. Then their hull is that
+    /// of the rays from there.
+    converge: bool,
     near_shift: [Floats; 3],
     far_shift: [Floats; 3],
     shear: [Floats; 2],
@@ -102,6 +107,8 @@ impl Bundle {
             origin: ZEROS,
             dir: ZEROS,
             inv_dir: ZEROS,
+            end: ZEROS,
+            converge: false,
             near_shift: ZEROS,
             far_shift: ZEROS,
             shear: [Lanes::splat(0.0); 2],
@@ -236,21 +243,13 @@ impl Bundle {
     /// by `along`: like [`RaySlabs::new`](super::RaySlabs::new) and
     /// [`Watertight`](super::triangle::Watertight).
     #[inline(always)]
-    pub(super) fn prepare<S: Simd>(
-        &mut self,
-        simd: S,
-        set: RaySet,
-        along: Axis,
-        reach: f32,
-    ) -> Hull {
-        (self.active, self.along) = (set, along);
-        let mut extremes = hull::Extremes::new(simd);
+    pub(super) fn prepare<S: Simd>(&mut self, simd: S, set: RaySet, along: Axis, reach: f32) {
+        (self.active, self.along, self.converge) = (set, along, false);
         for group in self.groups::<S>() {
             let origin = load3(simd, self.origin.each_ref(), group);
             let [ox, oy, oz] = origin;
             let farthest = ox.abs().max(oy.abs()).max(oz.abs());
             let padding = (farthest + reach) * PADDING;
-            let mut inv_dir = origin;
             for axis in 0..3 {
                 let dir = self.dir[axis].load(simd, group);
                 let smallest = S::f32s::splat(simd, MIN_COMPONENT);
@@ -262,13 +261,55 @@ impl Bundle {
                 self.inv_dir[axis].store::<S>(group, inv);
                 self.near_shift[axis].store::<S>(group, at_origin + margin);
                 self.far_shift[axis].store::<S>(group, at_origin - margin);
-                inv_dir[axis] = inv;
             }
             let [dx, dy, dz] = load3(simd, along.last(self.dir.each_ref()), group);
             self.shear[0].store::<S>(group, dx / dz);
             self.shear[1].store::<S>(group, dy / dz);
-            extremes.add(lanes_of(simd, set, group), origin, inv_dir);
+        }
+    }
+
+    /// Looks whether the prepared rays, which end at `t_max`, converge.
+    #[inline(always)]
+    pub(super) fn find_ends<S: Simd>(&mut self, simd: S, t_max: &Floats) {
+        let (mut starts, mut ends, mut farthest) = (0.0, 0.0, 0.0_f32);
+        for axis in 0..3 {
+            for group in self.groups::<S>() {
+                let along = self.dir[axis].load(simd, group) * t_max.load(simd, group);
+                self.end[axis].store::<S>(group, self.origin[axis].load(simd, group) + along);
+            }
+            let (least, most) = extremes(simd, self.active, &self.origin[axis]);
+            starts += most - least;
+            let (least, most) = extremes(simd, self.active, &self.end[axis]);
+            ends += most - least;
+            farthest = farthest.max(-least).max(most);
+        }
+        // Not so for rays without end: the sum of their ends is infinite or NaN.
+        self.converge = ends < starts && farthest < MAGNITUDES.end;
+    }
+
+    /// The hull of the rays that are traced together.
+    #[inline(always)]
+    pub(super) fn hull<S: Simd>(&self, simd: S, reach: f32) -> Hull {
+        let mut extremes = hull::Extremes::new(simd);
+        for group in self.groups::<S>() {
+            let lanes = lanes_of(simd, self.active, group);
+            let origin = load3(simd, self.origin.each_ref(), group);
+            let inv_dir = load3(simd, self.inv_dir.each_ref(), group);
+            if self.converge {
+                let end = load3(simd, self.end.each_ref(), group);
+                extremes.add(lanes, end, inv_dir.map(|inv| -inv));
+                extremes.reach(lanes, origin);
+            } else {
+                extremes.add(lanes, origin, inv_dir);
+            }
         }
         extremes.hull(simd, self, reach)
+    }
+
+    /// Goes on with those prepared rays only that are in `set`, which is not empty: their hull is narrower.
+    #[inline(always)]
+    pub(super) fn narrow<S: Simd>(&mut self, simd: S, set: RaySet, reach: f32) -> Hull {
+        self.active = set;
+        self.hull(simd, reach)
     }
 }

@@ -4,12 +4,14 @@ use super::Bvh;
 use super::node::{Block, Child, NO_PRIM, Node};
 use super::single::push_sorted;
 use super::stack::Stack;
-use crate::geometry::bundle::{Boxes, Bundle, Floats, Hull, LaneHits, TriangleLanes};
+use crate::geometry::bundle::{Boxes, Bundle, Floats, Hull, LaneHits, RaySet, TriangleLanes};
 use crate::geometry::triangle::{LANES, corners_of, take_lowest};
 use crate::math::simd::{Simd, SimdBase, SimdMask, f32x8};
 
 /// What a traversal is for; knows each ray's state.
 pub(super) trait Query {
+    /// Whether some rays may be done long before others.
+    const ENDS_EARLY: bool;
     /// The distance beyond which a ray takes no interest; negative when it is done.
     fn limits(&self) -> &Floats;
     /// Considers where the rays of a group meet a triangle.
@@ -18,22 +20,25 @@ pub(super) trait Query {
 
 /// Triangles that a bundle may test for each of its rays before it is taken apart.
 const PATIENCE: usize = 6;
+/// The same where rays are done at their first hit, so that fewer and fewer share the cost.
+const PATIENCE_FOR_ANY: usize = 3;
 
 impl Bvh {
-    /// Offers the query what it may want, roughly from front to back.
+    /// Offers the query what it may want, roughly from front to back (from back to front for rays that
+    /// converge).
     ///
     /// Says whether it got to the end. It gives up when the rays turn out to have little in common.
     #[inline(always)]
     pub(super) fn traverse_bundle<S: Simd>(
         &self,
         simd: S,
-        rays: &Bundle,
-        hull: &Hull,
+        rays: &mut Bundle,
+        mut hull: Hull,
         stack: &mut Stack,
         query: &mut impl Query,
     ) -> bool {
-        let mut patience = PATIENCE * rays.count();
-        let mut limit = farthest(simd, rays, query.limits());
+        let mut patience = patience_of(query) * rays.count();
+        let (mut limit, _) = farthest(simd, rays, query);
         let mut next = self.root;
         stack.clear();
         loop {
@@ -48,12 +53,16 @@ impl Bvh {
                 }
                 Child::Block(index) => {
                     if let Some(block) = self.blocks.get(index) {
-                        let tested = visit_block(simd, rays, hull, (block, limit), query);
-                        limit = farthest(simd, rays, query.limits());
+                        let tested = visit_block(simd, rays, &hull, (block, limit), query);
+                        let left;
+                        (limit, left) = farthest(simd, rays, query);
                         if patience < tested && limit >= 0.0 {
                             return false;
                         }
                         patience -= tested.min(patience);
+                        if left != 0 && 2 * left.count_ones() as usize <= rays.count() {
+                            hull = rays.narrow(simd, left, self.reach);
+                        }
                     }
                 }
             }
@@ -65,6 +74,16 @@ impl Bvh {
                 }
             };
         }
+    }
+}
+
+/// How many triangles for each ray.
+#[inline(always)]
+const fn patience_of<Q: Query>(_: &Q) -> usize {
+    if Q::ENDS_EARLY {
+        PATIENCE_FOR_ANY
+    } else {
+        PATIENCE
     }
 }
 
@@ -104,14 +123,22 @@ fn visit_block<S: Simd>(
     tested
 }
 
-/// The largest limit of all rays.
+/// The largest limit of all rays, and those that are not done where that may change.
 #[inline(always)]
-fn farthest<S: Simd>(simd: S, rays: &Bundle, limits: &Floats) -> f32 {
-    let mut most = S::f32s::splat(simd, f32::NEG_INFINITY);
+fn farthest<S: Simd, Q: Query>(simd: S, rays: &Bundle, query: &Q) -> (f32, RaySet) {
+    let (zero, mut most) = (
+        S::f32s::splat(simd, 0.0),
+        S::f32s::splat(simd, f32::NEG_INFINITY),
+    );
+    let mut left = 0;
     for group in rays.groups::<S>() {
-        most = most.max(limits.load(simd, group));
+        let limits = query.limits().load(simd, group);
+        most = most.max(limits);
+        if Q::ENDS_EARLY {
+            left |= limits.simd_ge(zero).to_bitmask() << (group * S::f32s::LEN);
+        }
     }
-    most.reduce_max()
+    (most.reduce_max(), left)
 }
 
 #[inline(always)]

@@ -16,6 +16,9 @@ use crate::math::simd::{Kernel, Simd, SimdBase, SimdMask};
 const MIN_RAYS: u32 = 8;
 /// How often 64 neighbours are cut to find some that run alike.
 const MAX_CUTS: u32 = 6;
+/// Bundles given up in a row double the doubt; half of it is how many blocks are traced one by one before the
+/// next try. Where triangles are smaller than what lies between two rays, neighbours have little in common.
+const MAX_DOUBT: u32 = 15;
 
 impl Bvh {
     /// [`Self::intersect`] for each ray, into `hits`.
@@ -282,6 +285,7 @@ impl<R: RaySource, Q: LaneQuery, A: Answers<Q>> Kernel for Many<'_, R, Q, A> {
     fn run<S: Simd>(mut self, simd: S) {
         let (mut bundle, mut stack) = (Bundle::new(), Stack::new());
         let mut t_max = Lanes::splat(-1.0);
+        let (mut doubt, mut untried) = (0, 0);
         for first in (0..self.rays.count()).step_by(RAYS) {
             self.answers.clear(first);
             self.rays.load(first, &mut bundle, &mut t_max);
@@ -292,7 +296,12 @@ impl<R: RaySource, Q: LaneQuery, A: Answers<Q>> Kernel for Many<'_, R, Q, A> {
             if hopeful == 0 {
                 continue;
             }
-            let (mut alone, mut cuts) = (hopeful, MAX_CUTS);
+            if untried > 0 {
+                untried -= 1;
+                simd.vectorize(|| self.trace_alone(first, hopeful, &mut stack));
+                continue;
+            }
+            let (mut alone, mut cuts, mut all_done) = (hopeful, MAX_CUTS, true);
             let sets = bundle.by_axis(simd, self.bvh.reach);
             for (along, set) in [Axis::X, Axis::Y, Axis::Z].into_iter().zip(sets) {
                 let mut left = set & hopeful;
@@ -302,14 +311,24 @@ impl<R: RaySource, Q: LaneQuery, A: Answers<Q>> Kernel for Many<'_, R, Q, A> {
                     left &= !set;
                     if set.count_ones() >= MIN_RAYS {
                         alone &= !set;
-                        let hull = bundle.prepare(simd, set, along, self.bvh.reach);
+                        bundle.prepare(simd, set, along, self.bvh.reach);
+                        if Q::ENDS_EARLY {
+                            bundle.find_ends(simd, &t_max);
+                        }
+                        let hull = bundle.hull(simd, self.bvh.reach);
                         self.query.start(simd, set, &t_max);
-                        self.trace(simd, first, (&bundle, &hull, set), &mut stack);
+                        all_done &= self.trace(simd, first, (&mut bundle, hull, set), &mut stack);
                     }
                 }
             }
+            doubt = if all_done {
+                0
+            } else {
+                (2 * doubt + 1).min(MAX_DOUBT)
+            };
+            untried = doubt / 2;
             if alone != 0 {
-                self.trace_alone(first, alone, &mut stack);
+                simd.vectorize(|| self.trace_alone(first, alone, &mut stack));
             }
         }
     }
@@ -338,15 +357,15 @@ impl<R: RaySource, Q: LaneQuery, A: Answers<Q>> Many<'_, R, Q, A> {
         Some(set)
     }
 
-    /// Traces the rays of `set` together, places counted from `first`.
+    /// Traces the rays of `set` together, places counted from `first`; says whether they stayed so to the end.
     #[inline(always)]
     fn trace<S: Simd>(
         &mut self,
         simd: S,
         first: usize,
-        (bundle, hull, set): (&Bundle, &Hull, RaySet),
+        (bundle, hull, set): (&mut Bundle, Hull, RaySet),
         stack: &mut Stack,
-    ) {
+    ) -> bool {
         let bvh = self.bvh;
         let done = bvh.traverse_bundle(simd, bundle, hull, stack, &mut self.query);
         if done {
@@ -358,10 +377,11 @@ impl<R: RaySource, Q: LaneQuery, A: Answers<Q>> Many<'_, R, Q, A> {
                 self.answers.put(first + lane, answer);
             }
         }
+        done
     }
 
     /// Traces the rays of `set` one by one.
-    #[inline(never)]
+    #[inline(always)]
     fn trace_alone(&mut self, first: usize, set: RaySet, stack: &mut Stack) {
         for place in ones(set).map(|lane| first + lane) {
             let (ray, t_max) = self.rays.ray(place);

@@ -54,6 +54,8 @@ impl<'a, F: HitFilter> AnyLanes<'a, F> {
 }
 
 impl<F: HitFilter> Query for AnyLanes<'_, F> {
+    const ENDS_EARLY: bool = true;
+
     #[inline(always)]
     fn limits(&self) -> &Floats {
         &self.limits
@@ -142,6 +144,8 @@ impl<'a, F: HitFilter> ClosestLanes<'a, F> {
 }
 
 impl<F: HitFilter> Query for ClosestLanes<'_, F> {
+    const ENDS_EARLY: bool = false;
+
     #[inline(always)]
     fn limits(&self) -> &Floats {
         &self.limits

@@ -105,9 +105,10 @@ impl Bvh {
                     }
                 }
                 Child::Block(index) => {
-                    let block = self.blocks.get(index);
-                    let stop = block.is_some_and(|b| visit_block(b, &test, &slabs, search));
-                    if stop {
+                    // No closure: it would be compiled without the vector instructions of the caller.
+                    if let Some(block) = self.blocks.get(index)
+                        && visit_block(block, &test, &slabs, search)
+                    {
                         return true;
                     }
                 }

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::check::same_picture;
 use super::spread::millis;
-use super::{BenchError, Spread};
+use super::stages::StageLog;
+use super::{BenchError, Spread, StageTimes};
 use crate::render::{Counters, Picture, Progressive, Snapshot};
 use crate::scene::Scene;
 
@@ -32,6 +33,8 @@ pub struct FrameTimes {
     pub reshade: Spread,
     /// From linear colours to those of the screen, ms.
     pub encode: Spread,
+    /// Where full passes like the timed ones spend their time, with clocks in the workers.
+    pub stages: StageTimes,
     /// What the full pass computed.
     pub counters: Counters,
 }
@@ -69,8 +72,12 @@ impl FrameCase {
         let mut rgba = vec![[0; 4]; self.snapshot.size.map(|n| n as usize).iter().product()];
         let (turned, lit) = (self.turned(), self.lit());
         let mut times: [Vec<f64>; 5] = Default::default();
+        let mut stages = StageLog::default();
         let mut counters = Counters::default();
         for round in 0..=rounds {
+            renderer.start(turned.clone());
+            renderer.start(self.snapshot.clone());
+            stages.pass(&mut renderer);
             renderer.start(turned.clone());
             let preview = millis(|| {
                 renderer.preview(STRIDE, &|| false);
@@ -97,6 +104,7 @@ impl FrameCase {
             full,
             reshade,
             encode,
+            stages: stages.times(),
             counters,
         })
     }

@@ -8,8 +8,8 @@ use super::super::{Counters, Frame};
 use super::relief;
 use super::trace::any_hits;
 use super::{
-    Column, Mirrors, PLACES, Places, Rays, Shadows, Surfaces, get_rgb, get3, groups, set, set_rgb,
-    set3,
+    Column, Mirrors, PLACES, Places, Rays, Shadows, Stage, StageWatch, Surfaces, get_rgb, get3,
+    groups, set, set_rgb, set3,
 };
 use crate::geometry::{HitLanes, offset_by_bound};
 use crate::math::simd::{Kernel, Simd};
@@ -33,6 +33,7 @@ pub fn reflected_light(
     surfaces: &mut Surfaces,
     shadows: &mut Shadows,
     counters: &mut Counters,
+    watch: &mut impl StageWatch,
 ) {
     shadows.rays.leaving = hits.prim;
     frame.level.run_or_plain(Ambient {
@@ -44,10 +45,13 @@ pub fn reflected_light(
         aim_at_light(frame, light, mirrors, (rays, surfaces), shadows);
         shadows.occluded = Places::EMPTY;
         if frame.shadows {
+            watch.done(Stage::Shade);
             relief::shadow_by_relief(frame, surfaces, shadows, counters);
+            watch.done(Stage::Perturb);
         }
         if frame.shadows && !shadows.lit.is_empty() {
             any_hits(frame, rays.count, shadows, counters);
+            watch.done(Stage::Trace);
         }
         frame.level.run_or_plain(AddLight {
             frame,

@@ -13,6 +13,9 @@ pub mod light;
 pub mod relief;
 pub mod surface;
 pub mod trace;
+mod watch;
+
+pub use watch::{Stage, StageWatch};
 
 use super::{Counters, Frame};
 use crate::geometry::{CachedHit, HitLanes, RayLanes, TriangleAttributes};
@@ -205,22 +208,30 @@ impl Work {
         hits: &HitLanes<PLACES>,
         mirrors: Mirrors,
         counters: &mut Counters,
+        watch: &mut impl StageWatch,
     ) {
         let (rays, surfaces) = (&mut self.rays, &mut self.surfaces);
         surface::mapped_surfaces(frame, rays, hits, surfaces, counters);
-        let shadows = &mut self.shadows;
-        light::reflected_light(frame, mirrors, (rays, hits), surfaces, shadows, counters);
+        watch.done(Stage::Perturb);
+        let (shadows, hit) = (&mut self.shadows, (&*rays, hits));
+        light::reflected_light(frame, mirrors, hit, surfaces, shadows, counters, watch);
         bounce::gather(frame, mirrors, rays, surfaces, &mut self.radiance);
         rays.active = match mirrors {
             Mirrors::Follow => bounce::turn_to_mirror_rays(frame, rays, hits, surfaces),
             Mirrors::End => Places::EMPTY,
         };
+        watch.done(Stage::Shade);
     }
 }
 
 impl Scratch {
     /// Follows the mirror rays through all bounces after the first: no recursion.
-    pub fn follow_mirrors(&mut self, frame: &Frame<'_>, counters: &mut Counters) {
+    pub fn follow_mirrors(
+        &mut self,
+        frame: &Frame<'_>,
+        counters: &mut Counters,
+        watch: &mut impl StageWatch,
+    ) {
         let Self { hits, work, .. } = self;
         for bounce in 1..=frame.max_bounces {
             if work.rays.active.is_empty() {
@@ -228,7 +239,8 @@ impl Scratch {
             }
             counters.mirror_rays += work.rays.active.count();
             trace::closest_hits(frame, &work.rays, hits, counters);
-            work.shade_hits(frame, hits, mirrors_at(frame, bounce), counters);
+            watch.done(Stage::Trace);
+            work.shade_hits(frame, hits, mirrors_at(frame, bounce), counters, watch);
         }
     }
 }

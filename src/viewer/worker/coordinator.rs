@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use egui::{Color32, ColorImage};
 
+use super::costs::Costs;
 use super::{
     FirstPass, Frame, FrameStats, PassRenderer, Refinement, RenderNote, RenderRequest,
     RendererFactory, Shared, lock,
@@ -17,13 +18,13 @@ use super::{
 use crate::render::{PassEnd, Snapshot};
 use crate::scene::save_picture::{SaveError, write_exr, write_png};
 
-/// Milliseconds that a first pass may take: the rest of a 60 Hz interval goes to encoding and the window.
-const FIRST_PASS_MILLIS: f32 = 13.0;
 /// A stride becomes finer only when the finer pass is expected to fit with this margin, so that the
 /// resolution does not flicker during a drag.
 const FINER_MARGIN: f32 = 0.75;
 /// Full passes slower than this are approached through every finer preview instead of at once.
-const SLOW_PASS_MILLIS: f32 = 60.0;
+const SLOW_PASS_MILLIS: f32 = 75.0;
+/// One pixel in 16 is shown down to 30 pictures a second before fewer are; milliseconds.
+const BEARABLE_MILLIS: f32 = 30.0;
 /// The coarsest preview: one pixel in 64.
 const COARSEST: u32 = 8;
 /// Refinement shows its first samples as they come, later ones ten times a second: each shown frame costs
@@ -31,7 +32,7 @@ const COARSEST: u32 = 8;
 const SHOW_EVERY: Duration = Duration::from_millis(100);
 /// How long a preview waits for the next edit before it is refined. In a drag edits come faster than this,
 /// and the window, too, needs the cores that refining would take.
-const REST: Duration = Duration::from_millis(25);
+const REST: Duration = Duration::from_millis(20);
 /// Samples that are shown as they come.
 const FAST_SAMPLES: u32 = 4;
 
@@ -64,8 +65,8 @@ pub(super) struct Coordinator {
     factory: RendererFactory,
     renderer: Option<(usize, Box<dyn PassRenderer>)>,
     job: Option<Job>,
-    /// Expected cost of a first pass; `None` before anything was measured in this scene.
-    nanos_per_pixel: Option<f32>,
+    /// Of first passes in this scene.
+    costs: Costs,
     /// Stride of the last first pass.
     stride: u32,
     passes: u64,
@@ -81,7 +82,7 @@ impl Coordinator {
             factory,
             renderer: None,
             job: None,
-            nanos_per_pixel: None,
+            costs: Costs::default(),
             stride: COARSEST,
             passes: 0,
             shown_at: None,
@@ -164,7 +165,7 @@ impl Coordinator {
         if let Some(job) = &self.job
             && !Arc::ptr_eq(&job.request.snapshot.scene, &request.snapshot.scene)
         {
-            self.nanos_per_pixel = None;
+            self.costs = Costs::default();
             self.stride = COARSEST;
         }
         self.rest_until = None;
@@ -256,17 +257,14 @@ impl Coordinator {
     /// Stride of the next pass: at first the finest that should fit into a screen interval, then finer ones.
     fn choose_stride(&mut self) -> Option<u32> {
         let job = self.job.as_ref()?;
-        let size = job.request.snapshot.size;
-        let millis = |stride| {
-            let pixels = pixels_of(size, stride);
-            self.nanos_per_pixel.map(|nanos| nanos * pixels * 1e-6)
-        };
+        let millis = |stride| self.costs.expected(stride);
         let slow = millis(1).is_none_or(|full| full > SLOW_PASS_MILLIS);
         match (job.stride, job.request.first_pass) {
             (0, FirstPass::FullResolution) | (1 | 2, _) => Some(1),
             (0, FirstPass::Adaptive) => {
+                let bits = self.shared.first_pass_millis.load(Ordering::Relaxed);
                 let limit = |stride| {
-                    FIRST_PASS_MILLIS
+                    f32::from_bits(bits)
                         * if stride < self.stride {
                             FINER_MARGIN
                         } else {
@@ -274,7 +272,11 @@ impl Coordinator {
                         }
                 };
                 let fits = |&stride: &u32| millis(stride).is_some_and(|t| t <= limit(stride));
-                self.stride = [1, 2, 4].into_iter().find(fits).unwrap_or(COARSEST);
+                let bearable = |&stride: &u32| millis(stride).is_some_and(|t| t <= BEARABLE_MILLIS);
+                let finest = [1, 2, 4].into_iter().find(fits);
+                self.stride = finest
+                    .or_else(|| Some(4).filter(bearable))
+                    .unwrap_or(COARSEST);
                 Some(self.stride)
             }
             (stride, _) => Some(if slow { stride / 2 } else { 1 }),
@@ -295,9 +297,7 @@ impl Coordinator {
         self.rest_until = (before == 0 && stride > 1).then(|| Instant::now() + REST);
         if before != 1 {
             // Later samples say nothing about a first pass, whose hits may be cached.
-            let nanos = took * 1e9 / pixels_of(job.request.snapshot.size, stride);
-            let known = self.nanos_per_pixel.unwrap_or(nanos);
-            self.nanos_per_pixel = Some(0.5 * (known + nanos));
+            self.costs.note(stride, took * 1e3);
         }
         let due = self.shown_at.is_none_or(|at| at.elapsed() >= SHOW_EVERY);
         let young = before != 1 || renderer.samples() <= FAST_SAMPLES;
@@ -339,14 +339,18 @@ impl Coordinator {
         renderer.encode_shown_into(job.request.exposure_ev, bytes);
         let image = ColorImage::new(size, pixels);
         self.shown_at = Some(Instant::now());
-        let replaced = {
+        let is_awaited = {
             let mut outbox = lock(&self.shared.outbox);
-            outbox.frame.replace(Frame { image, stats })
+            if let Some(unseen) = outbox.frame.replace(Frame { image, stats }) {
+                outbox.spare.push(unseen.image.pixels);
+            }
+            outbox.awaited.is_some_and(|g| g <= stats.generation)
         };
-        if let Some(unseen) = replaced {
-            lock(&self.shared.outbox).spare.push(unseen.image.pixels);
+        if is_awaited {
+            self.shared.arrived.notify_one();
+        } else {
+            (self.shared.wake_window)();
         }
-        (self.shared.wake_window)();
     }
 
     fn save(&mut self, path: &Path) {
@@ -366,6 +370,7 @@ impl Coordinator {
 
     fn note(&self, note: RenderNote) {
         lock(&self.shared.outbox).notes.push(note);
+        self.shared.arrived.notify_one();
         (self.shared.wake_window)();
     }
 }
@@ -387,11 +392,6 @@ fn write_picture(
     renderer.encode_shown_into(exposure_ev, &mut rgba);
     let rgb: Vec<_> = rgba.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
     write_png(path, size, &rgb)
-}
-
-/// Pixels that a pass with this stride renders.
-fn pixels_of([w, h]: [u32; 2], stride: u32) -> f32 {
-    w.div_ceil(stride) as f32 * h.div_ceil(stride) as f32
 }
 
 /// What a panic said.

@@ -8,12 +8,14 @@
 //! Besides `measure` this is the only room that reads a clock.
 
 mod coordinator;
+mod costs;
 
 use std::io;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
 
 use egui::{Color32, ColorImage};
 
@@ -197,6 +199,8 @@ struct Outbox {
     frame: Option<Frame>,
     notes: Vec<RenderNote>,
     spare: Vec<Vec<Color32>>,
+    /// The window waits for a frame of this generation or a later one.
+    awaited: Option<u64>,
 }
 
 struct Shared {
@@ -206,8 +210,16 @@ struct Shared {
     quit: AtomicBool,
     asleep: AtomicBool,
     outbox: Mutex<Outbox>,
+    /// Rung when something comes into the outbox that the window waits for.
+    arrived: Condvar,
+    /// Bits of the milliseconds that a first pass should take at most.
+    first_pass_millis: AtomicU32,
     wake_window: Box<dyn Fn() + Send + Sync>,
 }
+
+/// Milliseconds that a first pass may take at 60 Hz where a graphics card draws the window: the rest of the
+/// interval goes to encoding and to the window.
+pub const FIRST_PASS_MILLIS: f32 = 13.0;
 
 /// A poisoned lock only means that another thread panicked between two plain assignments.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -237,6 +249,8 @@ impl RenderWorker {
             quit: AtomicBool::new(false),
             asleep: AtomicBool::new(false),
             outbox: Mutex::default(),
+            arrived: Condvar::new(),
+            first_pass_millis: AtomicU32::new(FIRST_PASS_MILLIS.to_bits()),
             wake_window: Box::new(wake_window),
         });
         let for_thread = Arc::clone(&shared);
@@ -269,6 +283,31 @@ impl RenderWorker {
     #[must_use]
     pub const fn generation(&self) -> u64 {
         self.generation
+    }
+
+    /// Says how long adaptive first passes should take at most, milliseconds.
+    pub fn set_first_pass_millis(&self, millis: f32) {
+        let bits = millis.to_bits();
+        self.shared.first_pass_millis.store(bits, Ordering::Relaxed);
+    }
+
+    /// Waits until the outbox has a frame of the last request, or something went wrong with it, but not longer
+    /// than `most`. A frame that is waited for does not wake the window.
+    pub fn wait_for_frame(&self, most: Duration) {
+        let until = Instant::now() + most;
+        let mut outbox = lock(&self.shared.outbox);
+        outbox.awaited = Some(self.generation);
+        loop {
+            let frame = outbox.frame.as_ref();
+            let is_there = frame.is_some_and(|frame| frame.stats.generation >= self.generation);
+            let left = until.saturating_duration_since(Instant::now());
+            if is_there || left.is_zero() || !outbox.notes.is_empty() {
+                outbox.awaited = None;
+                return;
+            }
+            let woken = self.shared.arrived.wait_timeout(outbox, left);
+            outbox = woken.unwrap_or_else(PoisonError::into_inner).0;
+        }
     }
 
     /// The newest finished frame, once.
