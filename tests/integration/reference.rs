@@ -56,9 +56,11 @@ fn psnr_of(method: Method, [self_shadow, shadows]: [bool; 2], samples: u32, trut
         s.samples = samples;
     });
     let truth = read_picture(&data(truth)).expect("the reference picture can be read");
-    metrics::distance(&picture, &truth)
+    let psnr = metrics::distance(&picture, &truth)
         .expect("sizes agree")
-        .psnr_db
+        .psnr_db;
+    println!("{}: {psnr:.1} dB, self-shadow {self_shadow}, shadows {shadows}", method.name());
+    psnr
 }
 
 /// The table of tests/data/reference/README.md: what textbook methods are worth at 45°, as measured with a
