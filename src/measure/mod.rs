@@ -2,6 +2,8 @@
 //! of pictures, benchmarks.
 
 pub mod bench;
+pub mod error_map;
+pub mod flip;
 pub mod metrics;
 mod picture;
 pub mod report_equations;

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use egui::{Color32, ColorImage};
 
+use super::pair::Pair;
 use super::{
     FirstPass, Frame, FrameStats, PassRenderer, Refinement, RenderNote, RenderRequest,
     RendererFactory, Shared, lock,
@@ -62,7 +63,7 @@ enum Step {
 pub(super) struct Coordinator {
     shared: Arc<Shared>,
     factory: RendererFactory,
-    renderer: Option<(usize, Box<dyn PassRenderer>)>,
+    renderer: Option<Pair>,
     job: Option<Job>,
     /// Expected cost of a first pass; `None` before anything was measured in this scene.
     nanos_per_pixel: Option<f32>,
@@ -141,7 +142,7 @@ impl Coordinator {
     }
 
     fn is_converged(&self) -> bool {
-        self.has_sample() && self.renderer.as_ref().is_some_and(|r| r.1.is_converged())
+        self.has_sample() && self.renderer.as_ref().is_some_and(Pair::is_converged)
     }
 
     fn has_work(&self) -> bool {
@@ -158,6 +159,9 @@ impl Coordinator {
         if let Some(job) = self.job.as_mut().filter(keeps_film) {
             job.generation = generation;
             job.request = request;
+            if let (None, Some(renderer)) = (job.request.compare, &mut self.renderer) {
+                renderer.drop_second();
+            }
             self.publish();
             return;
         }
@@ -215,22 +219,23 @@ impl Coordinator {
     fn start(&mut self) -> io::Result<()> {
         let Some(job) = &self.job else { return Ok(()) };
         let (threads, snapshot) = (job.request.threads, job.request.snapshot.clone());
-        if self.renderer.as_ref().is_none_or(|(n, _)| *n != threads) {
+        let compare = job.request.compare;
+        if self.renderer.as_ref().is_none_or(|r| r.threads != threads) {
             // The old pool goes first: two at once would fight for the cores.
             self.renderer = None;
-            self.renderer = Some((threads, (self.factory)(threads)?));
+            self.renderer = Some(Pair::new(threads, &mut self.factory)?);
         }
-        if let Some((_, renderer)) = &mut self.renderer {
-            renderer.start(snapshot);
+        match &mut self.renderer {
+            Some(renderer) => renderer.start(snapshot, compare, &mut self.factory),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     fn render(&mut self) -> io::Result<()> {
         let Some(stride) = self.choose_stride() else {
             return Ok(());
         };
-        let Some((job, (_, renderer))) = self.job.as_ref().zip(self.renderer.as_mut()) else {
+        let Some((job, renderer)) = self.job.as_ref().zip(self.renderer.as_mut()) else {
             return Ok(());
         };
         let (shared, generation, first) = (&*self.shared, job.generation, job.stride == 0);
@@ -239,11 +244,7 @@ impl Coordinator {
             shared.quit.load(Ordering::Relaxed) || (!first && outdated())
         };
         let began = Instant::now();
-        let end = if stride == 1 {
-            renderer.pass(&stop)
-        } else {
-            renderer.preview(stride, &stop)
-        };
+        let end = renderer.advance(stride, &stop);
         if let Some(job) = &mut self.job {
             job.spent += began.elapsed();
         }
@@ -283,7 +284,7 @@ impl Coordinator {
 
     fn complete(&mut self, stride: u32) {
         self.passes += 1;
-        let Some((job, (_, renderer))) = self.job.as_mut().zip(self.renderer.as_ref()) else {
+        let Some((job, renderer)) = self.job.as_mut().zip(self.renderer.as_ref()) else {
             return;
         };
         let took = std::mem::take(&mut job.spent).as_secs_f32();
@@ -309,12 +310,15 @@ impl Coordinator {
     /// Encodes the film, puts it into the outbox and wakes the window.
     fn publish(&mut self) {
         let converged = self.is_converged();
-        let Some((job, (_, renderer))) = self.job.as_ref().zip(self.renderer.as_ref()) else {
+        let Some((job, renderer)) = self.job.as_ref().zip(self.renderer.as_ref()) else {
             return;
         };
+        if !renderer.is_even() {
+            return; // The pass under way makes them so, and shows them.
+        }
         let Snapshot { settings, size, .. } = &job.request.snapshot;
-        let shown = renderer.shown();
-        let stats = FrameStats {
+        let shown = renderer.first.shown();
+        let mut stats = FrameStats {
             generation: job.generation,
             size: *size,
             stride: shown.stride,
@@ -328,33 +332,53 @@ impl Coordinator {
             pass_millis: job.pass_millis,
             pass_rays: job.pass_rays,
             counters: renderer.counters(),
-            reshaded: renderer.reuses_hits(),
+            reshaded: renderer.first.reuses_hits(),
             passes: self.passes,
-            threads: renderer.threads(),
+            threads: renderer.first.threads(),
+            error: None,
         };
         let size = shown.size.map(|n| n as usize);
-        let mut pixels = lock(&self.shared.outbox).spare.pop().unwrap_or_default();
-        pixels.resize(size[0] * size[1], Color32::BLACK);
+        let buffer = || {
+            let mut pixels = lock(&self.shared.outbox).spare.pop().unwrap_or_default();
+            pixels.resize(size[0] * size[1], Color32::BLACK);
+            pixels
+        };
+        let (compare, exposure_ev) = (job.request.compare, job.request.exposure_ev);
+        let mut pixels = buffer();
         let bytes = bytemuck::cast_slice_mut(&mut pixels);
-        renderer.encode_shown_into(job.request.exposure_ev, bytes);
+        renderer.first.encode_shown_into(exposure_ev, bytes);
+        let second = renderer.encode_second(compare, exposure_ev, &pixels, buffer);
+        let other = second.map(|(pixels, error)| {
+            stats.error = error;
+            ColorImage::new(size, pixels)
+        });
         let image = ColorImage::new(size, pixels);
         self.shown_at = Some(Instant::now());
         let replaced = {
             let mut outbox = lock(&self.shared.outbox);
-            outbox.frame.replace(Frame { image, stats })
+            outbox.frame.replace(Frame {
+                image,
+                other,
+                stats,
+            })
         };
         if let Some(unseen) = replaced {
-            lock(&self.shared.outbox).spare.push(unseen.image.pixels);
+            let mut outbox = lock(&self.shared.outbox);
+            outbox.spare.push(unseen.image.pixels);
+            outbox.spare.extend(unseen.other.map(|image| image.pixels));
         }
         (self.shared.wake_window)();
     }
 
     fn save(&mut self, path: &Path) {
-        let Some((job, (_, renderer))) = self.job.as_ref().zip(self.renderer.as_ref()) else {
+        let Some((job, renderer)) = self.job.as_ref().zip(self.renderer.as_ref()) else {
             return;
         };
-        let (samples, wanted) = (renderer.samples(), job.request.snapshot.settings.samples);
-        let note = match write_picture(path, renderer.as_ref(), job.request.exposure_ev) {
+        let (samples, wanted) = (
+            renderer.first.samples(),
+            job.request.snapshot.settings.samples,
+        );
+        let note = match write_picture(path, &*renderer.first, job.request.exposure_ev) {
             Ok(()) => RenderNote::Saved(format!(
                 "Saved {} ({samples} of {wanted} samples)",
                 path.display()

@@ -8,6 +8,7 @@
 //! Besides `measure` this is the only room that reads a clock.
 
 mod coordinator;
+mod pair;
 
 use std::io;
 use std::path::PathBuf;
@@ -17,7 +18,9 @@ use std::thread::JoinHandle;
 
 use egui::{Color32, ColorImage};
 
+use crate::measure::error_map::{ErrorMetric, ErrorSummary};
 use crate::render::{Counters, PassEnd, Picture, Progressive, Shown, Snapshot};
+use crate::surface::mapping::Method;
 
 /// What the worker needs from a renderer. [`Progressive`] is the one that ships.
 pub trait PassRenderer: Send {
@@ -104,6 +107,24 @@ pub enum Refinement {
     Paused,
 }
 
+/// A second picture of the same snapshot, with the same samples, by another method.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Compare {
+    /// The other method.
+    pub method: Method,
+    /// Show how far the two are apart instead of the second picture.
+    pub error: Option<ErrorView>,
+}
+
+/// How errors become colours.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ErrorView {
+    /// What is measured.
+    pub metric: ErrorMetric,
+    /// The error that gets the brightest colour, above 0.
+    pub full_scale: f32,
+}
+
 /// Everything that a picture on the screen depends on.
 #[derive(Debug, Clone)]
 pub struct RenderRequest {
@@ -117,6 +138,8 @@ pub struct RenderRequest {
     pub refinement: Refinement,
     /// Worker threads, 0 for one per core. A change makes a new renderer.
     pub threads: usize,
+    /// What to render beside it.
+    pub compare: Option<Compare>,
 }
 
 impl RenderRequest {
@@ -127,15 +150,19 @@ impl RenderRequest {
             && self.exposure_ev.to_bits() == other.exposure_ev.to_bits()
             && self.first_pass == other.first_pass
             && self.refinement == other.refinement
+            && self.compare == other.compare
     }
 
-    /// Whether both ask for the same samples, so that what is done can stay.
+    /// Whether the other one asks for no other samples, so that what is done can stay. A comparison that begins
+    /// needs both pictures from the start, so that they always have the same samples.
     fn same_samples(&self, other: &Self) -> bool {
         let (a, b) = (&self.snapshot, &other.snapshot);
+        let method = |request: &Self| request.compare.map(|compare| compare.method);
         Arc::ptr_eq(&a.scene, &b.scene)
             && Arc::ptr_eq(&a.settings, &b.settings)
             && a.size == b.size
             && self.threads == other.threads
+            && (other.compare.is_none() || method(self) == method(other))
     }
 }
 
@@ -166,6 +193,8 @@ pub struct FrameStats {
     pub passes: u64,
     /// Size of the pool.
     pub threads: usize,
+    /// How far the two pictures are apart, if that is shown.
+    pub error: Option<ErrorSummary>,
 }
 
 /// A picture for the screen.
@@ -173,6 +202,8 @@ pub struct FrameStats {
 pub struct Frame {
     /// Opaque pixels, row 0 on top: of the picture, or of every `stride`-th pixel in both directions.
     pub image: ColorImage,
+    /// What stands beside it while two methods are compared, of the same size: the other picture, or the errors.
+    pub other: Option<ColorImage>,
     /// What is known about it.
     pub stats: FrameStats,
 }
@@ -286,7 +317,7 @@ impl RenderWorker {
     /// Gives the memory of a shown picture back for the next one.
     pub fn recycle(&self, pixels: Vec<Color32>) {
         let mut outbox = lock(&self.shared.outbox);
-        if outbox.spare.len() < 3 {
+        if outbox.spare.len() < 5 {
             outbox.spare.push(pixels);
         }
     }
