@@ -4,6 +4,8 @@
 pub mod bench;
 pub mod drawing;
 pub mod feel;
+pub mod error_map;
+pub mod flip;
 pub mod metrics;
 mod picture;
 pub mod profile_drawing;

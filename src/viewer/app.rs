@@ -18,14 +18,15 @@ use super::preferences::Preferences;
 use super::status::{self, Progress, Status};
 use super::story::{Story, story_ui};
 use super::toasts::Toasts;
-use super::viewport::{self, Framebuffer, ViewportClick};
+use super::viewport::{self, Framebuffer, Side, ViewportClick};
 use super::worker::{FirstPass, FrameStats, Refinement, RenderNote, RenderRequest, RenderWorker};
-use super::{ViewOptions, light_markers, loading, theme, windows};
+use super::{ViewOptions, compare_view, light_markers, loading, theme, windows};
 use crate::measure::feel::{Feel, FeelLog};
 use crate::render::{Progressive, Snapshot};
 use crate::scene::built_in::SCENES;
 use crate::scene::file::{SceneView, write_scene};
 use crate::scene::{LoadError, LoadedScene};
+use crate::surface::mapping::Method;
 use crate::texture::{MapRole, MapSlot};
 
 /// Stops per key press.
@@ -150,7 +151,19 @@ impl ViewerApp {
     /// The shown picture.
     #[must_use]
     pub fn image(&self) -> Option<&egui::ColorImage> {
-        self.framebuffer.image()
+        self.framebuffer.image(Side::A)
+    }
+
+    /// The second picture, or the errors, while two methods are compared.
+    #[must_use]
+    pub fn other_image(&self) -> Option<&egui::ColorImage> {
+        self.framebuffer.image(Side::B)
+    }
+
+    /// What is known about the shown frame.
+    #[must_use]
+    pub const fn stats(&self) -> &FrameStats {
+        self.framebuffer.stats()
     }
 
     fn open(&mut self, input: PathBuf) {
@@ -256,7 +269,9 @@ impl ViewerApp {
                 return;
             }
         };
-        let Some(doc) = &mut self.doc else { return };
+        let Some(doc) = &mut self.doc else {
+            return false;
+        };
         if !Arc::ptr_eq(&doc.scene, &added.before) {
             let text = format!("{}: the scene changed meanwhile", path.display());
             self.toasts.error(text);
@@ -359,7 +374,9 @@ impl ViewerApp {
 
     /// Commands that change the document.
     fn edit(&mut self, command: Command) {
-        let Some(doc) = &mut self.doc else { return };
+        let Some(doc) = &mut self.doc else {
+            return false;
+        };
         let [min, max] = doc.bounds();
         let exposure = &mut doc.display.exposure_ev;
         let brighter = |stops: f32| stops.clamp(-panels::MOST_STOPS, panels::MOST_STOPS);
@@ -369,6 +386,8 @@ impl ViewerApp {
             }
             Command::ExposureUp => *exposure = brighter(*exposure + EXPOSURE_STEP),
             Command::ExposureDown => *exposure = brighter(*exposure - EXPOSURE_STEP),
+            Command::ToggleCompare => doc.comparison.on = !doc.comparison.on,
+            Command::ToggleError => doc.comparison.toggle_error(),
             Command::Select(method) => doc.settings.mapping.method = method,
             Command::Undo => note_unless(doc.undo(), &mut self.toasts, "Nothing to undo."),
             Command::Redo => note_unless(doc.redo(), &mut self.toasts, "Nothing to redo."),
@@ -405,11 +424,34 @@ impl ViewerApp {
         }
     }
 
-    /// The picture with everything that the mouse does in it.
-    fn viewport_ui(&mut self, ui: &egui::Ui, rect: Rect) {
-        let response = viewport::sense_ui(ui, rect);
-        let Some(doc) = &mut self.doc else { return };
-        let mut click = viewport::navigate(ui, &response, &doc.scene, &mut doc.settings.camera);
+    /// Where A and B are drawn.
+    fn panes(&self, window: Rect) -> [Rect; 2] {
+        let Some(doc) = &self.doc else {
+            return [window; 2];
+        };
+        let mut free = window;
+        free.max.y -= status::HEIGHT;
+        if self.preferences.panel {
+            free.max.x -= panels::covered_width(window);
+        }
+        doc.comparison.panes(window, free)
+    }
+
+    /// What the mouse does in the picture; while two are compared it paints them and says so.
+    fn viewport_ui(&mut self, ui: &egui::Ui, window: Rect, panes: [Rect; 2]) -> bool {
+        let response = viewport::sense_ui(ui, window);
+        let Some(doc) = &mut self.doc else {
+            return false;
+        };
+        let method = doc.settings.mapping.method.info().label;
+        let comparison = &mut doc.comparison;
+        let are_painted =
+            compare_view::pictures_ui(ui, panes, &self.framebuffer, comparison, method);
+        let pointer = ui.input(|input| input.pointer.interact_pos());
+        let in_b = pointer.is_some_and(|pos| panes[1].contains(pos));
+        let rect = if in_b { panes[1] } else { panes[0] };
+        let camera = &mut doc.settings.camera;
+        let mut click = viewport::navigate(ui, &response, rect, &doc.scene, camera);
         if self.state.probe && response.clicked() {
             click = response.interact_pointer_pos().map(ViewportClick::Probe);
         }
@@ -418,7 +460,7 @@ impl ViewerApp {
         }
         if self.preferences.panel {
             let lights = &mut doc.settings.lights;
-            light_markers::markers_ui(ui, rect, &doc.settings.camera, lights);
+            light_markers::markers_ui(ui, panes[0], &doc.settings.camera, lights);
         }
         if let Some(ViewportClick::Probe(pos)) = click {
             let snapshot = Snapshot {
@@ -429,6 +471,7 @@ impl ViewerApp {
             let pixel = Projection::new(&doc.settings.camera, rect).pixel(pos, self.size);
             self.state.story = Story::of(&snapshot, pixel);
         }
+        are_painted
     }
 
     fn panel_ui(&mut self, ctx: &egui::Context, window: Rect) {
@@ -458,6 +501,12 @@ impl ViewerApp {
             ctx.request_repaint_after(Duration::from_millis(500));
         }
         let doc = self.doc.as_ref();
+        let method = doc.map_or_else(String::new, |doc| {
+            let label = |method: Method| method.info().label;
+            let name = label(doc.settings.mapping.method);
+            let other = doc.comparison.request().map(|other| label(other.method));
+            other.map_or(name.into(), |other| format!("{name} | {other}"))
+        });
         let status = Status {
             stats: &stats,
             progress: self.progress(),
@@ -465,7 +514,7 @@ impl ViewerApp {
             passes_per_sec: self.passes.rate(now),
             size: self.size,
             triangles: doc.map_or(0, |doc| doc.scene.facts.triangles),
-            method: doc.map_or("", |doc| doc.settings.mapping.method.info().label),
+            method: &method,
             exposure_ev: doc.map_or(0.0, |doc| doc.display.exposure_ev),
             feel: self.feel.feel(),
         };
@@ -485,6 +534,9 @@ impl ViewerApp {
     }
 
     fn overlays_ui(&mut self, ctx: &egui::Context, window: Rect) {
+        if let Some(doc) = &self.doc {
+            compare_view::legend_ui(ctx, &doc.comparison);
+        }
         windows::help_ui(ctx, &mut self.state.help);
         story_ui(ctx, &mut self.state.story);
         self.toasts.show_ui(ctx, status::HEIGHT);
@@ -518,6 +570,7 @@ impl ViewerApp {
                 Refinement::Running
             },
             threads: self.state.threads,
+            compare: doc.comparison.request(),
         };
         if self
             .sent
@@ -550,20 +603,23 @@ impl eframe::App for ViewerApp {
             ctx.send_viewport_cmd(ViewportCommand::Title(title));
         }
         let window = ui.max_rect();
-        self.size = viewport::framebuffer_size(&ctx, window);
         self.take_drops(&ctx);
         for command in commands::pressed(&ctx) {
             self.run(&ctx, command);
         }
         // Painted last, so that it can be the picture of this very frame's camera.
         let picture = ui.painter().add(egui::Shape::Noop);
-        self.viewport_ui(ui, window);
+        let panes = self.panes(window);
+        self.size = viewport::framebuffer_size(&ctx, panes[0]);
+        let are_painted = self.viewport_ui(ui, window, panes);
         self.panel_ui(&ctx, window);
         self.submit();
         let is_outdated = self.framebuffer.stats().generation != self.worker.generation();
         self.pacing.wait(&self.worker, is_outdated);
         self.take_frame(&ctx);
-        self.framebuffer.paint(ui, picture, window);
+        if !are_painted {
+            self.framebuffer.paint_in(ui, picture, window);
+        }
         self.status_ui(&ctx, window);
         self.overlays_ui(&ctx, window);
         let now = ctx.input(|input| input.time);

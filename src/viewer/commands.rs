@@ -25,6 +25,10 @@ pub enum Command {
     TogglePause,
     /// Clicks tell a pixel's story instead of orbiting.
     ToggleProbe,
+    /// Show a second method beside the first, or stop it.
+    ToggleCompare,
+    /// Show how far the two are apart, or the second picture.
+    ToggleError,
     /// A third of a stop brighter.
     ExposureUp,
     /// A third of a stop darker.
@@ -118,6 +122,18 @@ pub fn table() -> Vec<CommandInfo> {
         ),
         row(C::TogglePause, G::View, "Pause refining", &[plain(Key::P)]),
         row(C::ToggleProbe, G::View, "Probe pixels", &[plain(Key::I)]),
+        row(
+            C::ToggleCompare,
+            G::View,
+            "Compare two methods",
+            &[plain(Key::C)],
+        ),
+        row(
+            C::ToggleError,
+            G::View,
+            "Error in false colours",
+            &[plain(Key::X)],
+        ),
         row(C::ExposureUp, G::View, "Brighter", &[plain(Key::E)]),
         row(C::ExposureDown, G::View, "Darker", &[shift(Key::E)]),
         row(
@@ -141,7 +157,7 @@ pub fn table() -> Vec<CommandInfo> {
 }
 
 /// What the mouse does in the picture, for the help.
-pub const MOUSE: [(&str, &str); 8] = [
+pub const MOUSE: [(&str, &str); 10] = [
     ("Left drag", "Orbit"),
     ("Middle drag, Shift+left drag", "Pan"),
     ("Wheel", "Zoom to the cursor"),
@@ -149,6 +165,8 @@ pub const MOUSE: [(&str, &str); 8] = [
     ("Alt+click", "Tell the pixel's story"),
     ("Drag a light", "Move it across the picture"),
     ("Ctrl or Shift+drag a light", "Move it towards you or away"),
+    ("Drag the line", "Wipe between two methods"),
+    ("Hold B", "Show the second method alone"),
     ("Drop a file", "Open it, or put a picture on the material"),
 ];
 

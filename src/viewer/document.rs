@@ -6,6 +6,7 @@ use std::sync::Arc;
 use egui::util::undoer::{Settings, Undoer};
 use glam::DVec3;
 
+use super::comparison::Comparison;
 use crate::scene::{
     DisplaySettings, LoadWarning, LoadedScene, RenderSettings, Scene, SceneSource, ShadingSettings,
 };
@@ -20,6 +21,8 @@ pub struct Document {
     pub settings: RenderSettings,
     /// Encode again.
     pub display: DisplaySettings,
+    /// The second method beside the first; not saved, and not undone.
+    pub comparison: Comparison,
     /// The settings as opened, for the reset buttons.
     pub original: RenderSettings,
     /// Doubtful input.
@@ -51,6 +54,7 @@ impl Document {
             original: loaded.settings.clone(),
             settings: loaded.settings,
             display: loaded.display,
+            comparison: Comparison::default(),
             warnings: loaded.warnings,
             undo,
         }

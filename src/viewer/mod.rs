@@ -6,6 +6,7 @@
 //! - `feel`: a scripted hand, for measuring
 //! - `document`: what is open, and undo
 //! - `viewport`, `picking`, `light_markers`: the mouse in the picture
+//! - `comparison`, `compare_view`, `false_color`: two methods in one view, and how far they are apart
 //! - `panels`, `status`, `windows`, `toasts`, `widgets`, `color_edit`, `theme`: what is drawn over it
 //! - `commands`: the table behind keys, menu and help
 //!
@@ -15,8 +16,11 @@
 mod app;
 mod color_edit;
 pub mod commands;
+mod compare_view;
+pub mod comparison;
 mod dialogs;
 pub mod document;
+mod false_color;
 mod feel;
 mod light_markers;
 mod loader;

@@ -132,6 +132,11 @@ fn line_ui(ui: &mut Ui, status: &Status<'_>) {
         "How far the picture is",
     );
     item_ui(ui, status.method, Color32::WHITE, "Method in use");
+    if let Some(error) = &stats.error {
+        let text = format!("mean {:.4} p95 {:.4}", error.mean, error.p95);
+        let hint = format!("Error of A against B: {}", error.metric.label());
+        item_ui(ui, &text, theme::ACCENT, &hint);
+    }
     let weak = theme::WEAK;
     let rate = rays_per_sec(stats) / 1e6;
     item_ui(

@@ -1,8 +1,8 @@
 //! The picture fills the window; the mouse moves the camera in it.
 
 use egui::{
-    ColorImage, Event, Modifiers, MouseWheelUnit, PointerButton, Rect, Response, Role, Sense,
-    Shape, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, layers::ShapeIdx, pos2,
+    ColorImage, Event, Modifiers, MouseWheelUnit, Painter, PointerButton, Rect, Response, Role,
+    Sense, Shape, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, layers::ShapeIdx, pos2,
 };
 use std::sync::Arc;
 
@@ -17,13 +17,61 @@ const POINTS_PER_NOTCH: f32 = 50.0;
 /// Radians of orbit for a drag over the picture's height.
 const ORBIT_PER_HEIGHT: f64 = std::f64::consts::PI;
 
-/// The framebuffer as the window shows it.
+/// Which picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// The document's method.
+    A,
+    /// What stands beside it.
+    B,
+}
+
+/// A picture on the graphics card.
 #[derive(Default)]
-pub struct Framebuffer {
+struct Layer {
     texture: Option<TextureHandle>,
     /// Shared with the uploader until the frame is painted.
     shown: Option<Arc<ColorImage>>,
     retired: Vec<Arc<ColorImage>>,
+}
+
+impl Layer {
+    /// Uploads a picture and hands buffers that are free again back to the worker.
+    fn show(
+        &mut self,
+        ctx: &egui::Context,
+        (name, options): (&str, TextureOptions),
+        image: ColorImage,
+        worker: &RenderWorker,
+    ) {
+        let image = Arc::new(image);
+        match &mut self.texture {
+            // A partial update of everything keeps the allocation.
+            Some(texture) if texture.size() == image.size => {
+                texture.set_partial([0, 0], Arc::clone(&image), options);
+            }
+            Some(texture) => texture.set(Arc::clone(&image), options),
+            None => {
+                let texture = ctx.load_texture(name, Arc::clone(&image), options);
+                self.texture = Some(texture);
+            }
+        }
+        self.retired.extend(self.shown.replace(image));
+        for old in std::mem::take(&mut self.retired) {
+            match Arc::try_unwrap(old) {
+                Ok(image) => worker.recycle(image.pixels),
+                Err(still_uploading) => self.retired.push(still_uploading),
+            }
+        }
+    }
+}
+
+/// The framebuffer as the window shows it.
+#[derive(Default)]
+pub struct Framebuffer {
+    first: Layer,
+    /// Only while two methods are compared.
+    other: Option<Layer>,
     stats: FrameStats,
     frames: u64,
 }
@@ -41,13 +89,26 @@ impl Framebuffer {
         self.frames
     }
 
-    /// The shown pixels.
+    /// Whether there is a second picture.
     #[must_use]
-    pub fn image(&self) -> Option<&ColorImage> {
-        self.shown.as_deref()
+    pub const fn has_other(&self) -> bool {
+        self.other.is_some()
     }
 
-    /// Uploads a frame, to be drawn with these options, and hands buffers that are free again back to the worker.
+    /// The shown pixels of a side.
+    #[must_use]
+    pub fn image(&self, side: Side) -> Option<&ColorImage> {
+        self.layer(side)?.shown.as_deref()
+    }
+
+    const fn layer(&self, side: Side) -> Option<&Layer> {
+        match side {
+            Side::A => Some(&self.first),
+            Side::B => self.other.as_ref(),
+        }
+    }
+
+    /// Uploads a frame, to be drawn with these options.
     pub fn show(
         &mut self,
         ctx: &egui::Context,
@@ -55,44 +116,40 @@ impl Framebuffer {
         worker: &RenderWorker,
         options: TextureOptions,
     ) {
-        let image = Arc::new(frame.image);
-        match &mut self.texture {
-            // A partial update of everything keeps the allocation.
-            Some(texture) if texture.size() == image.size => {
-                texture.set_partial([0, 0], Arc::clone(&image), options);
+        self.first
+            .show(ctx, ("framebuffer", options), frame.image, worker);
+        match frame.other {
+            Some(image) => {
+                let other = self.other.get_or_insert_default();
+                other.show(ctx, ("second framebuffer", options), image, worker);
             }
-            Some(texture) => texture.set(Arc::clone(&image), options),
-            None => {
-                let texture = ctx.load_texture("framebuffer", Arc::clone(&image), options);
-                self.texture = Some(texture);
-            }
-        }
-        self.retired.extend(self.shown.replace(image));
-        for old in std::mem::take(&mut self.retired) {
-            match Arc::try_unwrap(old) {
-                Ok(image) => worker.recycle(image.pixels),
-                Err(still_uploading) => self.retired.push(still_uploading),
-            }
+            None => self.other = None,
         }
         self.stats = frame.stats;
         self.frames += 1;
     }
 
-    /// Paints the last frame over the rectangle, in the place kept for it, stretched while the next size is on
-    /// its way.
-    pub fn paint(&self, ui: &Ui, place: ShapeIdx, rect: Rect) {
-        if let Some(texture) = &self.texture {
-            let image = Shape::image(texture.id(), rect, self.uv(), egui::Color32::WHITE);
-            ui.painter().set(place, image);
+    /// Paints a side of the last frame over the rectangle, stretched while the next size is on its way.
+    pub fn paint(&self, painter: &Painter, rect: Rect, side: Side) {
+        let Some(layer) = self.layer(side) else {
+            return;
+        };
+        if let (Some(texture), Some(image)) = (&layer.texture, &layer.shown) {
+            painter.image(texture.id(), rect, self.uv(image), egui::Color32::WHITE);
+        }
+    }
+
+    /// Paints the first picture over the rectangle, in the place kept for it.
+    pub fn paint_in(&self, ui: &Ui, place: ShapeIdx, rect: Rect) {
+        if let (Some(texture), Some(image)) = (&self.first.texture, &self.first.shown) {
+            let shape = Shape::image(texture.id(), rect, self.uv(image), egui::Color32::WHITE);
+            ui.painter().set(place, shape);
         }
     }
 
     /// What part of the texture covers the rectangle. A texel of a preview belongs on the first pixel of the
     /// `stride` pixels that it stands for, so that nothing jumps when the whole picture follows.
-    fn uv(&self) -> Rect {
-        let Some(image) = &self.shown else {
-            return Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-        };
+    fn uv(&self, image: &ColorImage) -> Rect {
         let stride = self.stats.stride.max(1) as f32;
         let place = |pixel: u32, texels: usize| {
             ((pixel as f32 - 0.5) / stride + 0.5) / texels.max(1) as f32
@@ -126,21 +183,22 @@ pub fn sense_ui(ui: &Ui, rect: Rect) -> Response {
     response
 }
 
-/// Orbit, pan, zoom and pivot; returns a click that means something else.
+/// Orbit, pan, zoom and pivot in the pane that the pointer is over; returns a click that means something else.
 pub fn navigate(
     ui: &Ui,
     response: &Response,
+    pane: Rect,
     scene: &Scene,
     camera: &mut Camera,
 ) -> Option<ViewportClick> {
     let modifiers = ui.input(|i| i.modifiers);
-    drag(response, modifiers, camera);
+    drag(response, pane, modifiers, camera);
     if response.contains_pointer() {
-        zoom(ui, response, scene, camera);
+        zoom(ui, response, pane, scene, camera);
     }
     let pos = response.interact_pointer_pos()?;
     if response.double_clicked_by(PointerButton::Primary) {
-        if let Some(hit) = Projection::new(camera, response.rect).pick(scene, pos) {
+        if let Some(hit) = Projection::new(camera, pane).pick(scene, pos) {
             set_pivot(camera, hit);
         }
         return None;
@@ -148,8 +206,8 @@ pub fn navigate(
     (response.clicked() && modifiers.alt).then_some(ViewportClick::Probe(pos))
 }
 
-fn drag(response: &Response, modifiers: Modifiers, camera: &mut Camera) {
-    let delta = response.drag_delta() / response.rect.height().max(1.0);
+fn drag(response: &Response, pane: Rect, modifiers: Modifiers, camera: &mut Camera) {
+    let delta = response.drag_delta() / pane.height().max(1.0);
     if delta == Vec2::ZERO {
         return;
     }
@@ -166,7 +224,7 @@ fn drag(response: &Response, modifiers: Modifiers, camera: &mut Camera) {
 }
 
 /// Takes raw wheel events: egui spreads a notch over ten frames, which would be ten restarts.
-fn zoom(ui: &Ui, response: &Response, scene: &Scene, camera: &mut Camera) {
+fn zoom(ui: &Ui, response: &Response, pane: Rect, scene: &Scene, camera: &mut Camera) {
     let notches: f32 = ui.input(|input| {
         let notches = input.events.iter().map(|event| match event {
             Event::MouseWheel { unit, delta, .. } => match unit {
@@ -181,7 +239,7 @@ fn zoom(ui: &Ui, response: &Response, scene: &Scene, camera: &mut Camera) {
     });
     let pos = response.hover_pos();
     if let Some(pos) = pos.filter(|_| notches != 0.0 && notches.is_finite()) {
-        let fixed = Projection::new(camera, response.rect).anchor(scene, pos);
+        let fixed = Projection::new(camera, pane).anchor(scene, pos);
         let factor = ZOOM_PER_NOTCH.powf(f64::from(notches.clamp(-20.0, 20.0)));
         camera.zoom_towards(fixed, factor);
     }

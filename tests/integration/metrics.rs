@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use reliefscope::measure::flip::{PIXELS_PER_DEGREE, flip};
 use reliefscope::measure::{metrics, read_picture};
 use reliefscope::render::Picture;
 
@@ -30,4 +31,14 @@ fn published_distances_to_the_displaced_plane_are_met() {
 fn a_missing_picture_is_an_error_that_names_it() {
     let error = read_picture(Path::new("no/such/picture.exr")).unwrap_err();
     assert!(error.to_string().contains("picture.exr"), "{error}");
+}
+
+/// Measured by another program of ours on the same two files.
+#[test]
+fn flip_of_the_flat_plane_is_as_published() {
+    let [flat, truth] = ["plane_45_flat.exr", "plane_45_disp.exr"].map(reference);
+    let width = flat.width as usize;
+    let values = flip(&flat.pixels, &truth.pixels, width, PIXELS_PER_DEGREE);
+    let mean = values.iter().sum::<f32>() / values.len() as f32;
+    assert!((mean - 0.353).abs() < 0.01, "{mean}");
 }

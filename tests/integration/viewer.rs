@@ -1,5 +1,6 @@
 //! The window, driven without a display: the real app through its accessibility tree, and its worker.
 
+mod compare;
 mod controls;
 mod driver;
 mod files;

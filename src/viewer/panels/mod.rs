@@ -1,6 +1,7 @@
 //! The settings panel in the top right corner. Every section edits the document in place; what needs the
 //! app (files, dialogs) goes into a list of actions.
 
+mod compare;
 mod display;
 mod lights;
 mod map_slot;
@@ -77,9 +78,19 @@ pub struct PanelContext<'a> {
     pub actions: &'a mut Vec<Action>,
 }
 
+fn content_width(window: Rect) -> f32 {
+    WIDTH.min(window.width() * 0.55 - 2.0 * MARGIN).max(160.0)
+}
+
+/// Points that the panel takes of the window's right side.
+pub fn covered_width(window: Rect) -> f32 {
+    let frame = theme::glass().total_margin().sum().x;
+    content_width(window) + frame + 2.0 * MARGIN
+}
+
 /// Draws the panel into the window's rectangle, above `bottom` points of status line.
 pub fn panel_ui(ctx: &egui::Context, window: Rect, bottom: f32, panel: &mut PanelContext<'_>) {
-    let width = WIDTH.min(window.width() * 0.55 - 2.0 * MARGIN).max(160.0);
+    let width = content_width(window);
     let height = (window.height() - bottom - 2.0 * MARGIN - 22.0).max(80.0);
     Area::new(Id::unique("panel"))
         .anchor(Align2::RIGHT_TOP, Vec2::new(-MARGIN, MARGIN))
@@ -140,14 +151,21 @@ fn is_on(panel: &PanelContext<'_>, command: Command) -> bool {
         Command::TogglePause => panel.state.paused,
         Command::ToggleProbe => panel.state.probe,
         Command::ToggleHelp => panel.state.help,
+        Command::ToggleCompare => panel.doc.comparison.on,
+        Command::ToggleError => panel
+            .doc
+            .comparison
+            .request()
+            .is_some_and(|c| c.error.is_some()),
         _ => false,
     }
 }
 
 fn sections_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
     type Section = (&'static str, bool, fn(&mut Ui, &mut PanelContext<'_>));
-    const SECTIONS: [Section; 7] = [
+    const SECTIONS: [Section; 8] = [
         ("Method", true, method::method_ui),
+        ("Compare", false, compare::compare_ui),
         ("Scene", true, scene::scene_ui),
         ("Lights", false, lights::lights_ui),
         ("Materials", false, materials::materials_ui),

@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use egui::{Color32, ColorImage};
 
 use super::costs::Costs;
+use super::pair::Pair;
 use super::{
     FirstPass, Frame, FrameStats, PassRenderer, Refinement, RenderNote, RenderRequest,
     RendererFactory, Shared, lock,
@@ -63,7 +64,7 @@ enum Step {
 pub(super) struct Coordinator {
     shared: Arc<Shared>,
     factory: RendererFactory,
-    renderer: Option<(usize, Box<dyn PassRenderer>)>,
+    renderer: Option<Pair>,
     job: Option<Job>,
     /// Of first passes in this scene.
     costs: Costs,
@@ -142,7 +143,7 @@ impl Coordinator {
     }
 
     fn is_converged(&self) -> bool {
-        self.has_sample() && self.renderer.as_ref().is_some_and(|r| r.1.is_converged())
+        self.has_sample() && self.renderer.as_ref().is_some_and(Pair::is_converged)
     }
 
     fn has_work(&self) -> bool {
@@ -159,6 +160,9 @@ impl Coordinator {
         if let Some(job) = self.job.as_mut().filter(keeps_film) {
             job.generation = generation;
             job.request = request;
+            if let (None, Some(renderer)) = (job.request.compare, &mut self.renderer) {
+                renderer.drop_second();
+            }
             self.publish();
             return;
         }
@@ -216,22 +220,23 @@ impl Coordinator {
     fn start(&mut self) -> io::Result<()> {
         let Some(job) = &self.job else { return Ok(()) };
         let (threads, snapshot) = (job.request.threads, job.request.snapshot.clone());
-        if self.renderer.as_ref().is_none_or(|(n, _)| *n != threads) {
+        let compare = job.request.compare;
+        if self.renderer.as_ref().is_none_or(|r| r.threads != threads) {
             // The old pool goes first: two at once would fight for the cores.
             self.renderer = None;
-            self.renderer = Some((threads, (self.factory)(threads)?));
+            self.renderer = Some(Pair::new(threads, &mut self.factory)?);
         }
-        if let Some((_, renderer)) = &mut self.renderer {
-            renderer.start(snapshot);
+        match &mut self.renderer {
+            Some(renderer) => renderer.start(snapshot, compare, &mut self.factory),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     fn render(&mut self) -> io::Result<()> {
         let Some(stride) = self.choose_stride() else {
             return Ok(());
         };
-        let Some((job, (_, renderer))) = self.job.as_ref().zip(self.renderer.as_mut()) else {
+        let Some((job, renderer)) = self.job.as_ref().zip(self.renderer.as_mut()) else {
             return Ok(());
         };
         let (shared, generation, first) = (&*self.shared, job.generation, job.stride == 0);
@@ -240,11 +245,7 @@ impl Coordinator {
             shared.quit.load(Ordering::Relaxed) || (!first && outdated())
         };
         let began = Instant::now();
-        let end = if stride == 1 {
-            renderer.pass(&stop)
-        } else {
-            renderer.preview(stride, &stop)
-        };
+        let end = renderer.advance(stride, &stop);
         if let Some(job) = &mut self.job {
             job.spent += began.elapsed();
         }
@@ -285,7 +286,7 @@ impl Coordinator {
 
     fn complete(&mut self, stride: u32) {
         self.passes += 1;
-        let Some((job, (_, renderer))) = self.job.as_mut().zip(self.renderer.as_ref()) else {
+        let Some((job, renderer)) = self.job.as_mut().zip(self.renderer.as_ref()) else {
             return;
         };
         let took = std::mem::take(&mut job.spent).as_secs_f32();
@@ -309,12 +310,15 @@ impl Coordinator {
     /// Encodes the film, puts it into the outbox and wakes the window.
     fn publish(&mut self) {
         let converged = self.is_converged();
-        let Some((job, (_, renderer))) = self.job.as_ref().zip(self.renderer.as_ref()) else {
+        let Some((job, renderer)) = self.job.as_ref().zip(self.renderer.as_ref()) else {
             return;
         };
+        if !renderer.is_even() {
+            return; // The pass under way makes them so, and shows them.
+        }
         let Snapshot { settings, size, .. } = &job.request.snapshot;
-        let shown = renderer.shown();
-        let stats = FrameStats {
+        let shown = renderer.first.shown();
+        let mut stats = FrameStats {
             generation: job.generation,
             size: *size,
             stride: shown.stride,
@@ -328,21 +332,40 @@ impl Coordinator {
             pass_millis: job.pass_millis,
             pass_rays: job.pass_rays,
             counters: renderer.counters(),
-            reshaded: renderer.reuses_hits(),
+            reshaded: renderer.first.reuses_hits(),
             passes: self.passes,
-            threads: renderer.threads(),
+            threads: renderer.first.threads(),
+            error: None,
         };
         let size = shown.size.map(|n| n as usize);
-        let mut pixels = lock(&self.shared.outbox).spare.pop().unwrap_or_default();
-        pixels.resize(size[0] * size[1], Color32::BLACK);
+        let buffer = || {
+            let mut pixels = lock(&self.shared.outbox).spare.pop().unwrap_or_default();
+            pixels.resize(size[0] * size[1], Color32::BLACK);
+            pixels
+        };
+        let (compare, exposure_ev) = (job.request.compare, job.request.exposure_ev);
+        let mut pixels = buffer();
         let bytes = bytemuck::cast_slice_mut(&mut pixels);
-        renderer.encode_shown_into(job.request.exposure_ev, bytes);
+        renderer.first.encode_shown_into(exposure_ev, bytes);
+        let second = renderer.encode_second(compare, exposure_ev, &pixels, buffer);
+        let other = second.map(|(pixels, error)| {
+            stats.error = error;
+            ColorImage::new(size, pixels)
+        });
         let image = ColorImage::new(size, pixels);
         self.shown_at = Some(Instant::now());
         let is_awaited = {
             let mut outbox = lock(&self.shared.outbox);
-            if let Some(unseen) = outbox.frame.replace(Frame { image, stats }) {
+            let frame = Frame {
+                image,
+                other,
+                stats,
+            };
+            if let Some(unseen) = outbox.frame.replace(frame) {
                 outbox.spare.push(unseen.image.pixels);
+                outbox
+                    .spare
+                    .extend(unseen.other.map(|image| image.pixels));
             }
             outbox.awaited.is_some_and(|g| g <= stats.generation)
         };
@@ -354,11 +377,14 @@ impl Coordinator {
     }
 
     fn save(&mut self, path: &Path) {
-        let Some((job, (_, renderer))) = self.job.as_ref().zip(self.renderer.as_ref()) else {
+        let Some((job, renderer)) = self.job.as_ref().zip(self.renderer.as_ref()) else {
             return;
         };
-        let (samples, wanted) = (renderer.samples(), job.request.snapshot.settings.samples);
-        let note = match write_picture(path, renderer.as_ref(), job.request.exposure_ev) {
+        let (samples, wanted) = (
+            renderer.first.samples(),
+            job.request.snapshot.settings.samples,
+        );
+        let note = match write_picture(path, &*renderer.first, job.request.exposure_ev) {
             Ok(()) => RenderNote::Saved(format!(
                 "Saved {} ({samples} of {wanted} samples)",
                 path.display()

@@ -9,6 +9,7 @@
 
 mod coordinator;
 mod costs;
+mod pair;
 
 use std::io;
 use std::path::PathBuf;
@@ -19,7 +20,9 @@ use std::time::{Duration, Instant};
 
 use egui::{Color32, ColorImage};
 
+use crate::measure::error_map::{ErrorMetric, ErrorSummary};
 use crate::render::{Counters, PassEnd, Picture, Progressive, Shown, Snapshot};
+use crate::surface::mapping::Method;
 
 /// What the worker needs from a renderer. [`Progressive`] is the one that ships.
 pub trait PassRenderer: Send {
@@ -106,6 +109,24 @@ pub enum Refinement {
     Paused,
 }
 
+/// A second picture of the same snapshot, with the same samples, by another method.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Compare {
+    /// The other method.
+    pub method: Method,
+    /// Show how far the two are apart instead of the second picture.
+    pub error: Option<ErrorView>,
+}
+
+/// How errors become colours.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ErrorView {
+    /// What is measured.
+    pub metric: ErrorMetric,
+    /// The error that gets the brightest colour, above 0.
+    pub full_scale: f32,
+}
+
 /// Everything that a picture on the screen depends on.
 #[derive(Debug, Clone)]
 pub struct RenderRequest {
@@ -119,6 +140,8 @@ pub struct RenderRequest {
     pub refinement: Refinement,
     /// Worker threads, 0 for one per core. A change makes a new renderer.
     pub threads: usize,
+    /// What to render beside it.
+    pub compare: Option<Compare>,
 }
 
 impl RenderRequest {
@@ -129,15 +152,19 @@ impl RenderRequest {
             && self.exposure_ev.to_bits() == other.exposure_ev.to_bits()
             && self.first_pass == other.first_pass
             && self.refinement == other.refinement
+            && self.compare == other.compare
     }
 
-    /// Whether both ask for the same samples, so that what is done can stay.
+    /// Whether the other one asks for no other samples, so that what is done can stay. A comparison that begins
+    /// needs both pictures from the start, so that they always have the same samples.
     fn same_samples(&self, other: &Self) -> bool {
         let (a, b) = (&self.snapshot, &other.snapshot);
+        let method = |request: &Self| request.compare.map(|compare| compare.method);
         Arc::ptr_eq(&a.scene, &b.scene)
             && Arc::ptr_eq(&a.settings, &b.settings)
             && a.size == b.size
             && self.threads == other.threads
+            && (other.compare.is_none() || method(self) == method(other))
     }
 }
 
@@ -168,6 +195,8 @@ pub struct FrameStats {
     pub passes: u64,
     /// Size of the pool.
     pub threads: usize,
+    /// How far the two pictures are apart, if that is shown.
+    pub error: Option<ErrorSummary>,
 }
 
 /// A picture for the screen.
@@ -175,6 +204,8 @@ pub struct FrameStats {
 pub struct Frame {
     /// Opaque pixels, row 0 on top: of the picture, or of every `stride`-th pixel in both directions.
     pub image: ColorImage,
+    /// What stands beside it while two methods are compared, of the same size: the other picture, or the errors.
+    pub other: Option<ColorImage>,
     /// What is known about it.
     pub stats: FrameStats,
 }
@@ -325,7 +356,7 @@ impl RenderWorker {
     /// Gives the memory of a shown picture back for the next one.
     pub fn recycle(&self, pixels: Vec<Color32>) {
         let mut outbox = lock(&self.shared.outbox);
-        if outbox.spare.len() < 3 {
+        if outbox.spare.len() < 5 {
             outbox.spare.push(pixels);
         }
     }

@@ -1,14 +1,19 @@
 //! The rendering thread: what is replaced, what is finished, when it sleeps, what a panic does.
 
 use std::io;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use reliefscope::render::{Counters, PassEnd, Picture, Shown, Snapshot};
 use reliefscope::viewer::worker::{
-    FirstPass, Frame, PassRenderer, Refinement, RenderNote, RenderRequest, RenderWorker,
+    Compare, ErrorView, FirstPass, Frame, PassRenderer, Refinement, RenderNote, RenderRequest,
+    RenderWorker,
 };
+
+use reliefscope::measure::error_map::ErrorMetric;
+use reliefscope::surface::mapping::Method;
 
 use crate::support::{QuadScene, edited};
 
@@ -32,6 +37,13 @@ struct Fake {
     samples: u32,
     stride: u32,
     snapshot: Option<Snapshot>,
+    alive: Arc<AtomicUsize>,
+}
+
+impl Drop for Fake {
+    fn drop(&mut self) {
+        self.alive.fetch_sub(1, Ordering::SeqCst);
+    }
 }
 
 impl Fake {
@@ -111,6 +123,8 @@ struct Bench {
     arrived: Receiver<()>,
     open_gate: Sender<()>,
     woken: Receiver<()>,
+    /// Renderers that exist.
+    alive: Arc<AtomicUsize>,
 }
 
 impl Bench {
@@ -121,7 +135,10 @@ impl Bench {
         let (wake, woken) = channel();
         let gate = gated.then(|| Arc::new(Mutex::new(gate)));
         let for_factory = Arc::clone(&log);
+        let alive = Arc::new(AtomicUsize::new(0));
+        let count = Arc::clone(&alive);
         let factory = move |_threads| -> io::Result<Box<dyn PassRenderer>> {
+            count.fetch_add(1, Ordering::SeqCst);
             Ok(Box::new(Fake {
                 log: Arc::clone(&for_factory),
                 arrived: arrived_sender.clone(),
@@ -129,6 +146,7 @@ impl Bench {
                 samples: 0,
                 stride: 1,
                 snapshot: None,
+                alive: Arc::clone(&count),
             }))
         };
         let wake = Mutex::new(wake);
@@ -143,6 +161,7 @@ impl Bench {
             arrived,
             open_gate,
             woken,
+            alive,
         }
     }
 
@@ -186,6 +205,7 @@ fn request(snapshot: &Snapshot, samples: u32) -> RenderRequest {
         first_pass: FirstPass::FullResolution,
         refinement: Refinement::Running,
         threads: 1,
+        compare: None,
     }
 }
 
@@ -331,4 +351,97 @@ fn a_panic_is_reported_and_the_next_request_works() {
     bench.worker.submit(request(&quad, 2));
     let frame = bench.frame_where(|frame| frame.stats.converged);
     assert_eq!(frame.stats.generation, 2);
+}
+
+fn against_exact(request: RenderRequest) -> RenderRequest {
+    RenderRequest {
+        compare: Some(Compare {
+            method: Method::Exact,
+            error: None,
+        }),
+        ..request
+    }
+}
+
+#[test]
+fn a_comparison_renders_both_pass_by_pass() {
+    let (mut bench, quad) = (Bench::new(false), quad());
+    bench.worker.submit(against_exact(request(&quad, 2)));
+    let frame = bench.frame_where(|frame| frame.stats.converged);
+    let other = frame.other.expect("a second picture");
+    assert_eq!((other.size, frame.stats.samples), (frame.image.size, 2));
+    let done = Event::Pass(PassEnd::Complete);
+    let mut expected = vec![Event::Start(2); 2];
+    expected.extend(vec![done; 4]);
+    assert_eq!(bench.events(), expected);
+    assert_eq!(bench.alive.load(Ordering::SeqCst), 2);
+}
+
+#[test]
+fn no_comparison_costs_nothing() {
+    let (mut bench, quad) = (Bench::new(false), quad());
+    let plain = request(&quad, 2);
+    bench.worker.submit(plain.clone());
+    let frame = bench.frame_where(|frame| frame.stats.converged);
+    assert!(frame.other.is_none() && frame.stats.error.is_none());
+    assert_eq!(bench.alive.load(Ordering::SeqCst), 1);
+    bench.worker.submit(against_exact(plain.clone()));
+    bench.frame_where(|frame| frame.stats.generation == 2 && frame.stats.converged);
+    let before = bench.events();
+    // Ended, it leaves nothing behind, and the picture stays as it is.
+    bench.worker.submit(plain);
+    let frame = bench.frame_where(|frame| frame.stats.generation == 3);
+    assert!(frame.other.is_none() && frame.stats.converged);
+    assert_eq!(bench.alive.load(Ordering::SeqCst), 1);
+    assert_eq!(bench.events(), before);
+}
+
+#[test]
+fn a_comparison_goes_on_where_it_was_stopped() {
+    let (mut bench, quad) = (Bench::new(true), quad());
+    let dark = against_exact(request(&quad, 2));
+    bench.worker.submit(dark.clone());
+    for _ in 0..3 {
+        bench.wait_for_pass();
+        bench.release();
+    }
+    // Both have a sample, the first has two, and now the second's is stopped by a change that keeps the samples.
+    bench.wait_for_pass();
+    bench.worker.submit(RenderRequest {
+        exposure_ev: 4.0,
+        ..dark
+    });
+    bench.release();
+    bench.wait_for_pass();
+    bench.release();
+    bench.frame_where(|frame| frame.stats.converged);
+    let passes: Vec<_> = bench.events().into_iter().skip(2).collect();
+    let (done, stopped) = (PassEnd::Complete, PassEnd::Stopped);
+    let expected = [done, done, done, stopped, done].map(Event::Pass);
+    assert_eq!(passes, expected);
+}
+
+#[test]
+fn errors_are_measured_without_rendering_again() {
+    let (mut bench, quad) = (Bench::new(false), quad());
+    let plain = against_exact(request(&quad, 1));
+    bench.worker.submit(plain.clone());
+    bench.frame_where(|frame| frame.stats.converged);
+    let before = bench.events();
+    let mut errors = plain;
+    for metric in ErrorMetric::ALL {
+        errors.compare = errors.compare.map(|compare| Compare {
+            error: Some(ErrorView {
+                metric,
+                full_scale: 1.0,
+            }),
+            ..compare
+        });
+        let generation = bench.worker.submit(errors.clone());
+        let frame = bench.frame_where(|frame| frame.stats.generation == generation);
+        let error = frame.stats.error.expect("an error");
+        // The fakes render the same.
+        assert_eq!((error.metric, error.mean, error.p95), (metric, 0.0, 0.0));
+    }
+    assert_eq!(bench.events(), before);
 }

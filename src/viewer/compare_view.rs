@@ -1,0 +1,177 @@
+//! The pictures A and B in the window: the wipe's line, their names, and what the false colours mean.
+
+use egui::{
+    Align2, Area, Color32, CursorIcon, FontId, Id, Key, Order, Painter, Rect, Role, Sense, Shape,
+    Stroke, Ui, Vec2, WidgetInfo, pos2, vec2,
+};
+
+use super::comparison::{Comparison, Layout};
+use super::false_color::false_color;
+use super::status;
+use super::theme;
+use super::viewport::{Framebuffer, Side};
+
+/// Half the width of what can be grabbed around the line, points.
+const GRAB: f32 = 7.0;
+/// Distance of names from the line and the window's edge, points.
+const MARGIN: f32 = 10.0;
+/// The key that shows B.
+const HOLD: Key = Key::B;
+/// Columns and rows of the legend's bar, points.
+const BAR: Vec2 = vec2(220.0, 12.0);
+
+/// Paints both pictures while two methods are compared, and says so; then the line between them can be
+/// dragged. A single picture it leaves to the caller.
+pub fn pictures_ui(
+    ui: &Ui,
+    [left, right]: [Rect; 2],
+    framebuffer: &Framebuffer,
+    comparison: &mut Comparison,
+    name: &str,
+) -> bool {
+    if !comparison.on || !framebuffer.has_other() {
+        return false;
+    }
+    let names = [format!("A · {name}"), other_name(comparison)];
+    if comparison.is_side_by_side() {
+        for (pane, side, name) in [(left, Side::A, &names[0]), (right, Side::B, &names[1])] {
+            framebuffer.paint(ui.painter(), pane, side);
+            name_ui(ui, pane, pane.left() + MARGIN, Align2::LEFT_TOP, name);
+        }
+        return true;
+    }
+    let at_edge = left.left() + MARGIN;
+    let held = !ui.ctx().text_edit_focused() && ui.input(|input| input.key_down(HOLD));
+    if held || comparison.layout == Layout::Hold {
+        let (side, name) = if held { (Side::B, 1) } else { (Side::A, 0) };
+        framebuffer.paint(ui.painter(), left, side);
+        name_ui(ui, left, at_edge, Align2::LEFT_TOP, &names[name]);
+        return true;
+    }
+    let line = drag_line(ui, left, &mut comparison.split);
+    let (mut a, mut b) = (left, left);
+    (a.max.x, b.min.x) = (line, line);
+    for (part, side) in [(a, Side::A), (b, Side::B)] {
+        let painter = ui.painter().with_clip_rect(part);
+        framebuffer.paint(&painter, left, side);
+    }
+    draw_line(ui.painter(), left, line);
+    name_ui(ui, a, line - MARGIN, Align2::RIGHT_TOP, &names[0]);
+    name_ui(ui, b, line + MARGIN, Align2::LEFT_TOP, &names[1]);
+    true
+}
+
+fn other_name(comparison: &Comparison) -> String {
+    let method = comparison.method.info().label;
+    match comparison.error {
+        Some(metric) => format!("A against {method} · {}", metric.label()),
+        None => format!("B · {method}"),
+    }
+}
+
+/// Senses a drag of the line; returns its place.
+fn drag_line(ui: &Ui, rect: Rect, split: &mut f32) -> f32 {
+    let place = |split: f32| rect.left() + rect.width() * split;
+    let area = Rect::from_x_y_ranges(place(*split) - GRAB..=place(*split) + GRAB, rect.y_range());
+    let response = ui.interact(area, Id::unique("wipe"), Sense::drag());
+    response.widget_info(|| WidgetInfo::labeled(Role::Splitter, true, "Wipe line"));
+    if let Some(pos) = response
+        .interact_pointer_pos()
+        .filter(|_| response.dragged())
+    {
+        *split = ((pos.x - rect.left()) / rect.width().max(1.0)).clamp(0.0, 1.0);
+    }
+    response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
+    place(*split)
+}
+
+/// A bright line with a dark rim, to be seen on any picture, and a grip.
+fn draw_line(painter: &Painter, rect: Rect, x: f32) {
+    let dark = Color32::from_black_alpha(150);
+    painter.vline(x, rect.y_range(), Stroke::new(3.5, dark));
+    painter.vline(x, rect.y_range(), Stroke::new(1.5, Color32::WHITE));
+    let center = pos2(x, rect.center().y);
+    painter.circle(center, 11.0, dark, Stroke::new(1.5, Color32::WHITE));
+    for side in [-1.0, 1.0] {
+        let corner = |dx: f32, dy: f32| center + vec2(side * dx, dy);
+        let arrow = vec![corner(7.0, 0.0), corner(2.5, -4.0), corner(2.5, 4.0)];
+        painter.add(Shape::convex_polygon(arrow, Color32::WHITE, Stroke::NONE));
+    }
+}
+
+/// A picture's name at its top, unless its part is too narrow.
+fn name_ui(ui: &Ui, part: Rect, x: f32, align: Align2, name: &str) {
+    let font = FontId::proportional(13.5);
+    let galley = ui
+        .painter()
+        .layout_no_wrap(name.to_owned(), font, Color32::WHITE);
+    let size = galley.size() + vec2(14.0, 6.0);
+    if size.x + MARGIN > part.width() {
+        return;
+    }
+    let rect = align.anchor_size(pos2(x, part.top() + MARGIN), size);
+    let painter = ui.painter();
+    painter.rect_filled(rect, 4.0, Color32::from_black_alpha(170));
+    painter.galley(rect.min + vec2(7.0, 3.0), galley, Color32::WHITE);
+    let id = Id::unique("picture name").with(name);
+    let response = ui.interact(rect, id, Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
+}
+
+/// The bar of false colours with its numbers, in the corner above the status line.
+pub fn legend_ui(ctx: &egui::Context, comparison: &Comparison) {
+    let Some(metric) = comparison.error.filter(|_| comparison.on) else {
+        return;
+    };
+    let offset = vec2(MARGIN, -status::HEIGHT - MARGIN);
+    Area::new(Id::unique("error legend"))
+        .anchor(Align2::LEFT_BOTTOM, offset)
+        .order(Order::Middle)
+        .show(ctx, |ui| {
+            theme::glass().show(ui, |ui| {
+                ui.label(format!("Error: {}", metric.label()));
+                bar_ui(ui, comparison.full_scale);
+            });
+        });
+}
+
+fn bar_ui(ui: &mut Ui, full_scale: f32) {
+    let (rect, response) = ui.allocate_exact_size(BAR + vec2(0.0, 18.0), Sense::hover());
+    let numbers = [0.0, 0.5, 1.0].map(|t| scale_text(t * full_scale));
+    let name = format!("Colours from 0 to {}", numbers[2]);
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
+    let painter = ui.painter();
+    let columns = BAR.x as usize;
+    for i in 0..columns {
+        let corner = rect.min + vec2(i as f32, 0.0);
+        let color = false_color((i as f32 + 0.5) / columns as f32);
+        painter.rect_filled(Rect::from_min_size(corner, vec2(1.0, BAR.y)), 0.0, color);
+    }
+    let y = rect.top() + BAR.y + 4.0;
+    let places = [
+        (rect.left(), Align2::LEFT_TOP),
+        (rect.center().x, Align2::CENTER_TOP),
+        (rect.right(), Align2::RIGHT_TOP),
+    ];
+    for ((x, align), text) in places.into_iter().zip(numbers) {
+        let font = FontId::monospace(11.5);
+        painter.text(pos2(x, y), align, text, font, theme::TEXT);
+    }
+}
+
+/// Up to four decimals, without zeros at the end: "0.125", "1".
+fn scale_text(value: f32) -> String {
+    let text = format!("{value:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::scale_text;
+
+    #[test]
+    fn numbers_of_the_scale_are_short() {
+        let texts = [0.0, 0.125, 0.5, 1.0].map(scale_text);
+        assert_eq!(texts, ["0", "0.125", "0.5", "1"]);
+    }
+}
