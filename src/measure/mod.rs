@@ -3,8 +3,8 @@
 
 pub mod bench;
 pub mod drawing;
-pub mod feel;
 pub mod error_map;
+pub mod feel;
 pub mod flip;
 pub mod metrics;
 mod picture;

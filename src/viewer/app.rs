@@ -269,9 +269,7 @@ impl ViewerApp {
                 return;
             }
         };
-        let Some(doc) = &mut self.doc else {
-            return false;
-        };
+        let Some(doc) = &mut self.doc else { return };
         if !Arc::ptr_eq(&doc.scene, &added.before) {
             let text = format!("{}: the scene changed meanwhile", path.display());
             self.toasts.error(text);
@@ -374,9 +372,7 @@ impl ViewerApp {
 
     /// Commands that change the document.
     fn edit(&mut self, command: Command) {
-        let Some(doc) = &mut self.doc else {
-            return false;
-        };
+        let Some(doc) = &mut self.doc else { return };
         let [min, max] = doc.bounds();
         let exposure = &mut doc.display.exposure_ev;
         let brighter = |stops: f32| stops.clamp(-panels::MOST_STOPS, panels::MOST_STOPS);

@@ -371,7 +371,11 @@ fn without_a_window_the_program_says_so() {
 #[test]
 fn a_probe_draws_the_cut_through_the_relief() {
     let folder = Folder::new();
-    let probe = |pixel| ["probe", "plane", "--pixel", pixel, "--method", "steep", "--svg", "cut.svg"];
+    let probe = |pixel| {
+        [
+            "probe", "plane", "--pixel", pixel, "--method", "steep", "--svg", "cut.svg",
+        ]
+    };
     good(&folder, &probe("640,360"));
     let svg = std::fs::read_to_string(folder.path("cut.svg")).expect("the drawing is there");
     assert!(svg.starts_with("<svg ") && svg.contains("Steep parallax") && svg.contains("polygon"));

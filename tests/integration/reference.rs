@@ -59,7 +59,10 @@ fn psnr_of(method: Method, [self_shadow, shadows]: [bool; 2], samples: u32, trut
     let psnr = metrics::distance(&picture, &truth)
         .expect("sizes agree")
         .psnr_db;
-    println!("{}: {psnr:.1} dB, self-shadow {self_shadow}, shadows {shadows}", method.name());
+    println!(
+        "{}: {psnr:.1} dB, self-shadow {self_shadow}, shadows {shadows}",
+        method.name()
+    );
     psnr
 }
 

@@ -363,9 +363,7 @@ impl Coordinator {
             };
             if let Some(unseen) = outbox.frame.replace(frame) {
                 outbox.spare.push(unseen.image.pixels);
-                outbox
-                    .spare
-                    .extend(unseen.other.map(|image| image.pixels));
+                outbox.spare.extend(unseen.other.map(|image| image.pixels));
             }
             outbox.awaited.is_some_and(|g| g <= stats.generation)
         };

@@ -87,6 +87,7 @@ fn shown(threads: usize) -> Vec<[u8; 3]> {
             first_pass: FirstPass::Adaptive,
             refinement: Refinement::Running,
             threads,
+            compare: None,
         });
     }
     loop {
