@@ -201,14 +201,10 @@ fn mapping(bencher: Bencher, method: &str) {
         signs: Vec2::ONE,
     });
     let maps = MaterialMaps {
-        height: Some(BoundHeight {
-            map: &heights,
-            addressing,
-            scale: 0.02,
-            offset: -0.02,
-        }),
+        height: Some(BoundHeight::new(&heights, addressing, 0.02, -0.02)),
         normal,
         slope: normal,
+        ..MaterialMaps::default()
     };
     let settings = MappingSettings {
         method: Method::from_name(method).expect("a name from the list"),

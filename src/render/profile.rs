@@ -177,6 +177,9 @@ fn with_method(mapping: &MappingSettings, method: Method) -> MappingSettings {
     mapping
 }
 
+/// The surface that a method makes of the pixel after an edit of its settings.
+type Run<'a> = dyn Fn(Method, &dyn Fn(&mut MappingSettings)) -> SurfaceInteraction + 'a;
+
 /// The plane of the cut.
 struct Cut<'a> {
     field: &'a ReliefField<'a>,
@@ -281,7 +284,7 @@ impl<'a> Cut<'a> {
         method: Method,
         mapping: &MappingSettings,
         truth: &SurfaceInteraction,
-        run: &dyn Fn(Method, &dyn Fn(&mut MappingSettings)) -> SurfaceInteraction,
+        run: &Run<'_>,
     ) -> MethodProfile {
         let s = run(method, &|_| {});
         let rates = self.field.texels_per_uv();
@@ -309,7 +312,7 @@ impl<'a> Cut<'a> {
         method: Method,
         mapping: &MappingSettings,
         steps: u32,
-        run: &dyn Fn(Method, &dyn Fn(&mut MappingSettings)) -> SurfaceInteraction,
+        run: &Run<'_>,
     ) -> Vec<[f64; 2]> {
         let [low, high] = self.field.range();
         let search = &mapping.search;

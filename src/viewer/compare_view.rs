@@ -1,8 +1,8 @@
 //! The pictures A and B in the window: the wipe's line, their names, and what the false colours mean.
 
 use egui::{
-    Align2, Area, Color32, CursorIcon, FontId, Id, Key, Order, Painter, Rect, Role, Sense, Shape,
-    Stroke, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Area, Color32, CursorIcon, FontId, Id, Key, Order, Painter, PointerButton, Rect, Role,
+    Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
 use super::comparison::{Comparison, Layout};
@@ -77,7 +77,7 @@ fn drag_line(ui: &Ui, rect: Rect, split: &mut f32) -> f32 {
     response.widget_info(|| WidgetInfo::labeled(Role::Splitter, true, "Wipe line"));
     if let Some(pos) = response
         .interact_pointer_pos()
-        .filter(|_| response.dragged())
+        .filter(|_| response.dragged_by(PointerButton::Primary))
     {
         *split = ((pos.x - rect.left()) / rect.width().max(1.0)).clamp(0.0, 1.0);
     }

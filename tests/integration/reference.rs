@@ -47,6 +47,10 @@ fn assert_psnr(scene_file: &str, truth: &str, at_least_db: f64) {
 }
 
 /// The distance of one method's picture to a truth, decibels.
+#[expect(
+    clippy::print_stdout,
+    reason = "the figures that docs/methods.md quotes"
+)]
 fn psnr_of(method: Method, [self_shadow, shadows]: [bool; 2], samples: u32, truth: &str) -> f64 {
     let picture = rendered_with("bump.toml", |s| {
         s.mapping.method = method;

@@ -242,6 +242,7 @@ impl Bundle {
     /// Prepares those rays for being traced together that are in `set`, which is not empty, all dominated
     /// by `along`: like [`RaySlabs::new`](super::RaySlabs::new) and
     /// [`Watertight`](super::triangle::Watertight).
+    #[expect(clippy::needless_range_loop, reason = "five arrays share the index")]
     #[inline(always)]
     pub(super) fn prepare<S: Simd>(&mut self, simd: S, set: RaySet, along: Axis, reach: f32) {
         (self.active, self.along, self.converge) = (set, along, false);

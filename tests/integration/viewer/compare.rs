@@ -134,7 +134,9 @@ fn errors_have_a_legend_and_two_numbers() {
 fn both_pictures_follow_the_camera() {
     let mut driver = comparing();
     let before = driver.app().other_image().expect("B").pixels.clone();
-    driver.drag(PointerButton::Middle, Modifiers::NONE, vec2(60.0, 40.0));
+    let beside_the_line = pos2(WINDOW.x * 0.25, WINDOW.y * 0.5);
+    let way = vec2(60.0, 40.0);
+    driver.drag_from(beside_the_line, PointerButton::Middle, Modifiers::NONE, way);
     driver.settle();
     assert_ne!(driver.app().other_image().expect("B").pixels, before);
     assert_eq!(

@@ -61,13 +61,7 @@ impl Axis {
     #[inline(always)]
     pub fn fraction(&self, tau: f64) -> f64 {
         let inside = self.at(tau) - (self.base + f64::from(self.local));
-        if inside < 0.0 {
-            0.0
-        } else if inside > 1.0 {
-            1.0
-        } else {
-            inside
-        }
+        inside.clamp(0.0, 1.0)
     }
 
     /// Texels per unit of the parameter.
