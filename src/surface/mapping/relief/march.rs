@@ -36,7 +36,7 @@ impl Layers {
         }
     }
 
-    /// [`Self::at`] for one point.
+    /// How many layers a ray at this cosine between view and normal takes.
     #[must_use]
     pub fn count(self, cos: f32) -> f32 {
         self.at(cos)
