@@ -1,8 +1,9 @@
 //! The exact walk against a plain walk over every cell in double precision.
 
 use reliefscope::math::V2;
+use reliefscope::math::simd::SimdLevel;
 use reliefscope::surface::mapping::BoundHeight;
-use reliefscope::surface::mapping::relief::{ReliefField, ReliefRay};
+use reliefscope::surface::mapping::relief::{ReliefField, ReliefRay, Side, Walk};
 use reliefscope::texture::{Addressing, Grid, HeightMap, HeightPyramid, Wrap};
 
 use super::Random;
@@ -46,15 +47,14 @@ fn maps() -> Vec<(&'static str, HeightMap)> {
 
 /// Marches cell by cell with its own arithmetic; the first place not above the patch.
 fn plain_walk(height: &HeightMap, wrap: Wrap, ray: &ReliefRay, offset: f64) -> Option<f64> {
-    let length = (ray.z_end - ray.z_start).abs();
-    let toward = (ray.z_end - ray.z_start).signum();
-    let at = |tau: f64| [0, 1].map(|k| ray.start[k] + ray.per_z[k] * toward * tau);
+    let length = ray.end;
+    let at = |tau: f64| [0, 1].map(|k| ray.start[k] + ray.rate[k] * tau);
     // Every parameter at which a texel line is crossed.
     let mut cuts = vec![0.0, length];
     for k in 0..2 {
         let (a, b) = (at(0.0)[k], at(length)[k]);
         let (low, high) = (a.min(b).ceil() as i64, a.max(b).floor() as i64);
-        let rate = ray.per_z[k] * toward;
+        let rate = ray.rate[k];
         if rate != 0.0 {
             cuts.extend(
                 (low..=high).map(|line| ((line as f64 - ray.start[k]) / rate).clamp(0.0, length)),
@@ -82,10 +82,10 @@ fn plain_walk(height: &HeightMap, wrap: Wrap, ray: &ReliefRay, offset: f64) -> O
             let [px, py] = at(tau);
             let (fx, fy) = (px - i, py - j);
             let patch = (a * (1.0 - fx) + b * fx) * (1.0 - fy) + (c * (1.0 - fx) + d * fx) * fy;
-            ray.z_start + toward * tau - patch
+            ray.z_at(tau) - patch
         };
         if let Some(tau) = first_crossing(&gap, from, to) {
-            return Some(ray.z_start + toward * tau);
+            return Some(ray.z_at(tau));
         }
     }
     None
@@ -146,16 +146,11 @@ fn the_exact_walk_finds_what_a_walk_over_every_cell_finds() {
                 let per_z = [cos, sin].map(|c| c * angle.tan());
                 let start =
                     [0; 2].map(|_| (random.between(0.0, 1.0) * 4.0 - 1.5) * f64::from(SIZE));
-                let ray = ReliefRay {
-                    start,
-                    per_z,
-                    z_start: high,
-                    z_end: low - thickness * 1e-6,
-                };
+                let ray = ReliefRay::by_height(start, per_z, high, low - thickness * 1e-6);
                 let walk = field.walk(&ray);
                 assert!(!walk.capped, "{name}, {wrap:?}: {ray:?}");
                 let expected = plain_walk(&height, wrap, &ray, f64::from(-AMPLITUDE));
-                let found = walk.z.expect("sinking rays hit");
+                let found = ray.z_at(walk.at.expect("sinking rays hit"));
                 let expected = expected.expect("in the oracle too");
                 // A ray that grazes a crest by less than rounding may go either way: compare heights there.
                 let error = (found - expected).abs() * angle.tan().max(1.0);
@@ -170,7 +165,7 @@ fn the_exact_walk_finds_what_a_walk_over_every_cell_finds() {
 
 /// Whether the ray touches the relief at this displacement, to rounding.
 fn grazes(field: &ReliefField<'_>, ray: &ReliefRay, z: f64) -> bool {
-    let place = [0, 1].map(|k| ray.start[k] + ray.per_z[k] * (z - ray.z_start));
+    let place = [0, 1].map(|k| ray.start[k] + ray.rate[k] * (z - ray.z) / ray.z_rate);
     (field.displacement(place) - z).abs() < 1e-9
 }
 
@@ -185,24 +180,109 @@ fn rising_rays_are_shadowed_where_a_walk_over_every_cell_says_so() {
             let angle = (random.between(0.0, 1.0) * 89.0).to_radians();
             let (sin, cos) = (random.between(0.0, 1.0) * std::f64::consts::TAU).sin_cos();
             let start = [0; 2].map(|_| random.between(0.0, 1.0) * f64::from(SIZE));
-            let ray = ReliefRay {
-                start,
-                per_z: [cos, sin].map(|c| c * angle.tan()),
-                z_start: field.displacement(start) + 1e-5,
-                z_end: high,
-            };
-            if ray.z_start >= high {
+            let per_z = [cos, sin].map(|c| c * angle.tan());
+            let z_start = field.displacement(start) + 1e-5;
+            if z_start >= high {
                 continue;
             }
+            let ray = ReliefRay::by_height(start, per_z, z_start, high);
             let walk = field.walk(&ray);
             let expected = plain_walk(&height, Wrap::Repeat, &ray, f64::from(-AMPLITUDE));
             assert!(!walk.capped, "{name}: {ray:?}");
-            let same = walk.z.is_some() == expected.is_some();
-            let z = walk.z.or(expected).unwrap_or(high);
+            let found = walk.at.map(|tau| ray.z_at(tau));
+            let same = found.is_some() == expected.is_some();
+            let z = found.or(expected).unwrap_or(high);
             assert!(
                 same || grazes(&field, &ray, z),
                 "{name}: {walk:?} is not {expected:?} on {ray:?}"
             );
+        }
+    }
+}
+
+/// A ray between two random points in and around the layer: rising, sinking, level, upright, from either
+/// side.
+fn any_ray(field: &ReliefField<'_>, random: &mut Random) -> ReliefRay {
+    let [low, high] = field.range();
+    let mut point = || {
+        let [x, y] = [0; 2].map(|_| (random.between(0.0, 1.0) * 3.0 - 1.0) * f64::from(SIZE));
+        [
+            x,
+            y,
+            low + (high - low) * (random.between(0.0, 1.0) * 1.4 - 0.2),
+        ]
+    };
+    let (from, mut to) = (point(), point());
+    match random.between(0.0, 10.0) as u32 {
+        0 => to[2] = from[2],
+        1 => to[0] = from[0],
+        2 => (to[0], to[1]) = (from[0], from[1]),
+        _ => {}
+    }
+    let end = random.between(0.5, 90.0);
+    let [dx, dy, dz] = [0, 1, 2].map(|k| (to[k] - from[k]) / end);
+    let above = from[2] > field.displacement([from[0], from[1]]);
+    ReliefRay {
+        start: [from[0], from[1]],
+        rate: [dx, dy],
+        z: from[2],
+        z_rate: dz,
+        end,
+        side: if above { Side::Above } else { Side::Below },
+    }
+}
+
+#[test]
+fn walks_from_either_side_meet_the_relief_where_a_fine_march_crosses_it() {
+    let mut random = Random(0x51DE);
+    for (name, height) in maps() {
+        let pyramid = HeightPyramid::new(&height, Wrap::Repeat);
+        let field = field(&height, &pyramid, Wrap::Repeat);
+        for _ in 0..ray_count() / 40 {
+            let ray = any_ray(&field, &mut random);
+            let walk = field.walk(&ray);
+            assert!(!walk.capped, "{name}: {ray:?}");
+            let gap = |tau: f64| {
+                let place = [0, 1].map(|k| ray.start[k] + ray.rate[k] * tau);
+                let gap = ray.z_at(tau) - field.displacement(place);
+                if ray.side == Side::Above { gap } else { -gap }
+            };
+            let reached = walk.at.unwrap_or(ray.end);
+            if let Some(at) = walk.at {
+                assert!(
+                    gap(at).abs() < 1e-9,
+                    "{name}: {} at {at} of {ray:?}",
+                    gap(at)
+                );
+            }
+            for i in 0..2000 {
+                let tau = reached * f64::from(i) / 2000.0;
+                assert!(
+                    gap(tau) > -1e-9,
+                    "{name}: passed through at {tau} of {ray:?}: {walk:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn walks_in_lanes_come_to_what_walks_alone_come_to() {
+    let mut random = Random(0x1A9E);
+    for (name, height) in maps() {
+        for wrap in Wrap::ALL {
+            let pyramid = HeightPyramid::new(&height, wrap);
+            let field = field(&height, &pyramid, wrap);
+            let mut rays: Vec<_> = (0..3000).map(|_| any_ray(&field, &mut random)).collect();
+            rays[17].end = 1e13;
+            let alone: Vec<_> = rays.iter().map(|ray| field.walk(ray)).collect();
+            for level in SimdLevel::ALL.into_iter().filter(|l| l.is_available()) {
+                for count in [0, 1, 5, 3000] {
+                    let mut walks = vec![Walk::NONE; count];
+                    field.walk_all(level, &rays[..count], &mut walks);
+                    assert_eq!(walks, alone[..count], "{name}, {wrap:?}, {level}");
+                }
+            }
         }
     }
 }

@@ -41,14 +41,12 @@ fn walk_down(field: &ReliefField<'_>, uv: [f64; 2], per_z: [f64; 2]) -> [f32; 4]
     let rates = field.texels_per_uv();
     let per_z_texels = [per_z[0] * rates[0], per_z[1] * rates[1]];
     let [x, y] = field.texels_from_uv(uv);
-    let walk = field.walk(&ReliefRay {
-        start: [x + per_z_texels[0] * high, y + per_z_texels[1] * high],
-        per_z: per_z_texels,
-        z_start: high,
-        // A little further, so that rounding cannot end the walk above the lowest height.
-        z_end: low - LIFT * (high - low),
-    });
-    let z = walk.z.unwrap_or(low).clamp(low, high);
+    let start = [x + per_z_texels[0] * high, y + per_z_texels[1] * high];
+    // A little further, so that rounding cannot end the walk above the lowest height.
+    let z_end = low - LIFT * (high - low);
+    let ray = ReliefRay::by_height(start, per_z_texels, high, z_end);
+    let walk = field.walk(&ray);
+    let z = walk.at.map_or(low, |tau| ray.z_at(tau).clamp(low, high));
     let (u, v) = (uv[0] + per_z[0] * z, uv[1] + per_z[1] * z);
     [u as f32, v as f32, z as f32, walk.steps as f32]
 }
@@ -89,11 +87,7 @@ fn walk_up(field: &ReliefField<'_>, uv: [f64; 2], per_z: [f64; 2]) -> [f32; 2] {
     if z_start >= high {
         return [0.0; 2];
     }
-    let walk = field.walk(&ReliefRay {
-        start,
-        per_z: [per_z[0] * rates[0], per_z[1] * rates[1]],
-        z_start,
-        z_end: high,
-    });
-    [f32::from(u8::from(walk.z.is_some())), walk.steps as f32]
+    let per_z = [per_z[0] * rates[0], per_z[1] * rates[1]];
+    let walk = field.walk(&ReliefRay::by_height(start, per_z, z_start, high));
+    [f32::from(u8::from(walk.at.is_some())), walk.steps as f32]
 }

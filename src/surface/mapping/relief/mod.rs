@@ -3,7 +3,7 @@
 //! - `shell`: the view ray through the layer that the relief fills
 //! - `march`: fixed numbers of samples, and their refinements
 //! - `cones`: steps as wide as a map of cones allows
-//! - `walk`, `axis`: cell by cell through a pyramid of extremes, exact
+//! - `walk`, `axis`: cell by cell through a pyramid of extremes, exact; `walk_lanes`: many walks in step
 //! - `exact`: the walk for surface points, for the eye and for lights
 
 mod axis;
@@ -12,13 +12,14 @@ mod exact;
 mod march;
 mod shell;
 mod walk;
+mod walk_lanes;
 
 use crate::math::V2;
 
 pub use cones::cone_steps;
 pub use exact::{exact, is_shadowed};
 pub use march::{Layers, Refinement, iterate, march};
-pub use walk::{ReliefField, ReliefRay, Walk};
+pub use walk::{ReliefField, ReliefRay, Side, Walk};
 
 /// What a search came to.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,6 +1,8 @@
 //! The exact walk: where a straight ray first meets the bilinear relief.
 
 use super::axis::Axis;
+use super::walk_lanes::walk_all;
+use crate::math::simd::SimdLevel;
 use crate::surface::mapping::BoundHeight;
 use crate::texture::{HeightPyramid, Level, StoredHeights, Wrap};
 
@@ -19,28 +21,91 @@ pub struct ReliefField<'a> {
     range: [f64; 2],
 }
 
-/// A straight ray over a flat chart, by its displacement z (internal units along the normal).
-#[derive(Debug, Clone, Copy)]
+/// A straight ray over a flat chart, by a parameter τ ≥ 0 of any length.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReliefRay {
-    /// Place in texels (whole numbers at texel centres) at `z_start`.
+    /// Place in texels (whole numbers at texel centres) at τ = 0.
     pub start: [f64; 2],
-    /// Texels per unit of z.
-    pub per_z: [f64; 2],
-    /// Displacement at the start.
-    pub z_start: f64,
-    /// Displacement at the end; below the start the ray sinks, above it rises.
-    pub z_end: f64,
+    /// Texels per unit of τ.
+    pub rate: [f64; 2],
+    /// Displacement at τ = 0, internal units along the normal.
+    pub z: f64,
+    /// Its change per unit of τ.
+    pub z_rate: f64,
+    /// τ at which it ends, finite.
+    pub end: f64,
+    /// Where it comes from.
+    pub side: Side,
+}
+
+/// A side of a relief.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// The side that the normal points to.
+    Above,
+    /// The other.
+    Below,
+}
+
+impl Side {
+    /// What displacements are multiplied by so that the ray is above: seen from below, a relief is the
+    /// same turned over.
+    #[inline(always)]
+    pub(super) const fn sign(self) -> f64 {
+        match self {
+            Self::Above => 1.0,
+            Self::Below => -1.0,
+        }
+    }
+}
+
+impl ReliefRay {
+    /// A ray from displacement `z` to `z_end`, with the way gone along z as its parameter. `per_z` are
+    /// texels per unit of z.
+    #[must_use]
+    pub fn by_height(start: [f64; 2], per_z: [f64; 2], z: f64, z_end: f64) -> Self {
+        let toward = if z_end > z { 1.0 } else { -1.0 };
+        Self {
+            start,
+            rate: per_z.map(|rate| rate * toward),
+            z,
+            z_rate: toward,
+            end: (z_end - z).abs(),
+            side: Side::Above,
+        }
+    }
+
+    /// Displacement at τ.
+    #[must_use]
+    pub fn z_at(&self, tau: f64) -> f64 {
+        self.z + self.z_rate * tau
+    }
+
+    /// Whether it stays where cells can be told apart.
+    pub(super) fn is_near(&self) -> bool {
+        let reach = |k: usize| self.start[k].abs() + self.rate[k].abs() * self.end;
+        reach(0) < FARTHEST && reach(1) < FARTHEST
+    }
 }
 
 /// What a walk came to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walk {
-    /// Displacement at which the ray first is not above the relief; `None` if it always is.
-    pub z: Option<f64>,
+    /// τ at which the ray first is not on its side of the relief any more; `None` if it always is.
+    pub at: Option<f64>,
     /// Pyramid nodes and cells looked at.
     pub steps: u32,
     /// Whether it was given up after more steps than any walk should need.
     pub capped: bool,
+}
+
+impl Walk {
+    /// No step was taken.
+    pub const NONE: Self = Self {
+        at: None,
+        steps: 0,
+        capped: false,
+    };
 }
 
 /// No walk takes more steps, whatever the map.
@@ -116,24 +181,18 @@ impl<'a> ReliefField<'a> {
         }
     }
 
-    /// Where the ray first is not above the bilinear relief.
+    /// Where the ray first meets the bilinear relief.
     ///
     /// Never misses and never stops early, at any angle: cells are counted in integers, parameters are
-    /// doubles, and squares are skipped only where the ray passes above all of their corners. A sinking
-    /// ray that ends at or below the lowest displacement always hits. Rays that reach farther than 10¹²
-    /// texels are not walked.
+    /// doubles, and squares are skipped only where the ray passes clear of all of their corners. A sinking
+    /// ray from above that ends at or below the lowest displacement always hits. Rays that reach farther
+    /// than 10¹² texels are not walked.
     ///
     /// Source: max mipmaps, Tevs et al. 2008.
     #[must_use]
     pub fn walk(&self, ray: &ReliefRay) -> Walk {
-        let length = (ray.z_end - ray.z_start).abs();
-        let reach = |k: usize| ray.start[k].abs() + ray.per_z[k].abs() * length;
-        if !(reach(0) < FARTHEST && reach(1) < FARTHEST) {
-            return Walk {
-                z: None,
-                steps: 0,
-                capped: false,
-            };
+        if !ray.is_near() {
+            return Walk::NONE;
         }
         match self.stored {
             StoredHeights::U16(texels, nodes) => self.with(texels, nodes).walk(ray),
@@ -141,7 +200,23 @@ impl<'a> ReliefField<'a> {
         }
     }
 
-    const fn with<T>(&self, texels: &'a [T], nodes: &'a [[T; 2]]) -> Typed<'a, T> {
+    /// [`Self::walk`] for many rays, with the instructions of `level`: the same bits.
+    ///
+    /// # Panics
+    /// If there are not as many places for what came of them as rays.
+    pub fn walk_all(&self, level: SimdLevel, rays: &[ReliefRay], walks: &mut [Walk]) {
+        assert_eq!(rays.len(), walks.len(), "one place for each ray");
+        match self.stored {
+            StoredHeights::U16(texels, nodes) => {
+                walk_all(&self.with(texels, nodes), level, rays, walks);
+            }
+            StoredHeights::F32(texels, nodes) => {
+                walk_all(&self.with(texels, nodes), level, rays, walks);
+            }
+        }
+    }
+
+    pub(super) const fn with<T>(&self, texels: &'a [T], nodes: &'a [[T; 2]]) -> Typed<'a, T> {
         Typed {
             texels,
             nodes,
@@ -155,14 +230,14 @@ impl<'a> ReliefField<'a> {
 }
 
 /// A relief whose kind of number is known.
-struct Typed<'a, T> {
-    texels: &'a [T],
-    nodes: &'a [[T; 2]],
-    levels: &'a [Level],
-    size: [u32; 2],
-    wrap: Wrap,
-    factor: f64,
-    offset: f64,
+pub(super) struct Typed<'a, T> {
+    pub(super) texels: &'a [T],
+    pub(super) nodes: &'a [[T; 2]],
+    pub(super) levels: &'a [Level],
+    pub(super) size: [u32; 2],
+    pub(super) wrap: Wrap,
+    pub(super) factor: f64,
+    pub(super) offset: f64,
 }
 
 impl<T: Copy + Into<f64>> Typed<'_, T> {
@@ -176,15 +251,16 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
         a + (b - a) * fx + (c - a) * fy + (a - b - c + d) * fx * fy
     }
 
-    fn walk(&self, ray: &ReliefRay) -> Walk {
-        let rising = ray.z_end > ray.z_start;
-        let toward = if rising { 1.0 } else { -1.0 };
-        let end = (ray.z_end - ray.z_start).abs();
-        let mut x = Axis::new(self.size[0], ray.start[0], ray.per_z[0] * toward);
-        let mut y = Axis::new(self.size[1], ray.start[1], ray.per_z[1] * toward);
-        let cap = self.step_cap(&x, &y, end);
-        let top = self.levels.len() as u32 - 1;
-        let mut level = start_level(x.rate().abs().max(y.rate().abs()) * end).min(top);
+    pub(super) fn walk(&self, ray: &ReliefRay) -> Walk {
+        let sign = ray.side.sign();
+        let line = [ray.z * sign, ray.z_rate * sign];
+        let inv_sinking = 1.0 / -line[1];
+        let end = ray.end;
+        let mut x = Axis::new(self.size[0], ray.start[0], ray.rate[0]);
+        let mut y = Axis::new(self.size[1], ray.start[1], ray.rate[1]);
+        let cap = self.step_cap(ray);
+        let top = self.top();
+        let mut level = start_level(ray, top);
         let mut tau = 0.0_f64;
         let mut steps = 0;
         let found = loop {
@@ -196,34 +272,28 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
             let (exit_x, exit_y) = (x.exit(span_x), y.exit(span_y));
             let exit = larger(smaller(exit_x, exit_y), tau);
             let leave = smaller(exit, end);
-            let lowest = if rising {
-                ray.z_start + tau
-            } else {
-                ray.z_start - leave
-            };
+            let lowest = line[0] + line[1] * if line[1] > 0.0 { tau } else { leave };
             let high = if self.wrap == Wrap::Repeat {
-                self.high(level, x.local(), y.local())
+                self.high(level, [x.local(), y.local()], sign)
             } else {
-                self.highest(
-                    level,
-                    x.cells(span_x, self.wrap),
-                    y.cells(span_y, self.wrap),
-                )
+                let columns = x.cells(span_x, self.wrap);
+                self.highest(level, columns, y.cells(span_y, self.wrap), sign)
             };
             if lowest <= high {
                 if level > 0 {
                     level -= 1;
-                    if !rising {
+                    if line[1] < 0.0 {
                         // Down to the highest point nothing is in the way.
-                        tau = larger(tau, smaller(ray.z_start - high, leave));
+                        let down = (line[0] - high) * inv_sinking;
+                        tau = larger(tau, smaller(down, leave));
                     }
                     x.settle(span_x, tau);
                     y.settle(span_y, tau);
                     continue;
                 }
-                let line = [ray.z_start + toward * tau, toward];
-                if let Some(after) = self.meet_cell((&x, &y), tau, leave - tau, line) {
-                    break Some(ray.z_start + toward * (tau + after));
+                let line = [line[0] + line[1] * tau, line[1]];
+                if let Some(after) = self.meet_cell((&x, &y), tau, leave - tau, line, sign) {
+                    break Some(tau + after);
                 }
             }
             if exit >= end {
@@ -242,10 +312,15 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
             }
         };
         Walk {
-            z: found,
+            at: found,
             steps,
             capped: steps > cap,
         }
+    }
+
+    /// The level with a single node.
+    pub(super) const fn top(&self) -> u32 {
+        self.levels.len() as u32 - 1
     }
 
     #[inline(always)]
@@ -253,21 +328,24 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
         stored.into() * self.factor + self.offset
     }
 
-    /// The largest displacement over the square of a cell of the picture.
+    /// The largest displacement over the square of a cell of the picture, seen from the side of `sign`.
     #[inline(always)]
-    fn high(&self, level: u32, i: u32, j: u32) -> f64 {
-        let Level { start, columns, .. } = self.levels[level as usize];
-        let node = start + (j >> level) as usize * columns as usize + (i >> level) as usize;
-        let [low, high] = self.nodes[node];
-        self.displaced(if self.factor >= 0.0 { high } else { low })
+    fn high(&self, level: u32, [i, j]: [u32; 2], sign: f64) -> f64 {
+        self.displaced(self.farthest(level, [i >> level, j >> level], sign)) * sign
     }
 
-    /// The same over up to four squares.
-    fn highest(&self, level: u32, columns: [u32; 2], rows: [u32; 2]) -> f64 {
-        let row = |j| {
-            self.high(level, columns[0], j)
-                .max(self.high(level, columns[1], j))
-        };
+    /// The stored height behind it, for a node of the level.
+    #[inline(always)]
+    pub(super) fn farthest(&self, level: u32, [i, j]: [u32; 2], sign: f64) -> T {
+        let Level { start, columns, .. } = self.levels[level as usize];
+        let [low, high] = self.nodes[start + j as usize * columns as usize + i as usize];
+        if self.factor * sign >= 0.0 { high } else { low }
+    }
+
+    /// [`Self::high`] over up to four squares.
+    fn highest(&self, level: u32, columns: [u32; 2], rows: [u32; 2], sign: f64) -> f64 {
+        let high = |i, j| self.high(level, [i, j], sign);
+        let row = |j| high(columns[0], j).max(high(columns[1], j));
         row(rows[0]).max(row(rows[1]))
     }
 
@@ -289,10 +367,17 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
     }
 
     /// How far after `tau`, but not beyond `len`, the ray meets the bilinear patch of its cell. `line` is
-    /// its displacement there and the change per unit of the parameter.
+    /// its displacement there and the change per unit of τ, seen from the side of `sign`.
     #[inline(always)]
-    fn meet_cell(&self, (x, y): (&Axis, &Axis), tau: f64, len: f64, line: [f64; 2]) -> Option<f64> {
-        let [h00, h10, h01, h11] = self.corners(x, y);
+    fn meet_cell(
+        &self,
+        (x, y): (&Axis, &Axis),
+        tau: f64,
+        len: f64,
+        line: [f64; 2],
+        sign: f64,
+    ) -> Option<f64> {
+        let [h00, h10, h01, h11] = self.corners(x, y).map(|h| h * sign);
         let (fx, fy) = (x.fraction(tau), y.fraction(tau));
         let (dx, dy) = (x.rate(), y.rate());
         let (hx, hy, twist) = (h10 - h00, h01 - h00, h00 - h10 - h01 + h11);
@@ -304,9 +389,9 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
     }
 
     /// Twice what the finest possible walk could take, ups and downs included.
-    fn step_cap(&self, x: &Axis, y: &Axis, end: f64) -> u32 {
+    pub(super) fn step_cap(&self, ray: &ReliefRay) -> u32 {
         let [w, h] = self.size.map(f64::from);
-        let tiles = 2.0 + (x.rate() * end / w).abs() + (y.rate() * end / h).abs();
+        let tiles = 2.0 + (ray.rate[0] * ray.end / w).abs() + (ray.rate[1] * ray.end / h).abs();
         let cap = 64.0 + 4.0 * (w + h) * tiles;
         cap.min(STEP_CAP) as u32
     }
@@ -327,8 +412,9 @@ fn larger(a: f64, b: f64) -> f64 {
 /// The level whose squares are about as wide as the way to go: finer ones would be climbed, coarser ones
 /// descended, for nothing.
 #[inline(always)]
-fn start_level(texels: f64) -> u32 {
-    (texels.min(1e9) as u32).max(1).ilog2()
+pub(super) fn start_level(ray: &ReliefRay, top: u32) -> u32 {
+    let texels = ray.rate[0].abs().max(ray.rate[1].abs()) * ray.end;
+    (texels.min(1e9) as u32).max(1).ilog2().min(top)
 }
 
 /// The first σ in `[0, len]` at which `a σ² + b σ + c` is not above 0.
