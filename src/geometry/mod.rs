@@ -20,6 +20,7 @@ pub use bvh::Bvh;
 pub use mesh::{TriangleAttributes, TriangleMesh};
 pub use normalization::Normalization;
 pub use ray::{
-    CachedHit, Hit, HitLanes, NO_HIT, OriginRule, Ray, RayLanes, offset_by_bound, offset_origin,
+    CachedHit, DisplacedLanes, Hit, HitLanes, NO_HIT, OriginRule, Ray, RayLanes, offset_by_bound,
+    offset_origin,
 };
 pub use slabs::RaySlabs;

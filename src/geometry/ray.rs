@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::Aabb;
-use crate::math::lanes::Lanes;
+use crate::math::lanes::{Lanes, PlaceSet};
 use crate::math::{Real, V3};
 
 /// A half line. `dir` has unit length, so `t` is a distance in internal units.
@@ -134,6 +134,53 @@ pub struct HitLanes<const N: usize> {
     pub u: Lanes<f32, N>,
     /// Barycentric weight of its third vertex.
     pub v: Lanes<f32, N>,
+    /// Hits that do not lie on the triangle itself; `None` until there are any.
+    pub displaced: Option<Box<DisplacedLanes<N>>>,
+}
+
+/// Places in sets of `N`: a bit each.
+const WORDS: usize = 16;
+
+/// Points of displaced surfaces, side by side; what other places hold means nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DisplacedLanes<const N: usize> {
+    /// Places with such a point.
+    pub places: PlaceSet<WORDS>,
+    /// The points.
+    pub p: [Lanes<f32, N>; 3],
+    /// Unit normals on the front side.
+    pub normal: [Lanes<f32, N>; 3],
+    /// How far rounding may have taken each point off its surface, along the normal.
+    pub bound: Lanes<f32, N>,
+    /// Triangle of the mesh under each.
+    pub prim: Lanes<u32, N>,
+    /// Weights of its second and third vertex.
+    pub weights: [Lanes<f32, N>; 2],
+}
+
+impl<const N: usize> Default for DisplacedLanes<N> {
+    fn default() -> Self {
+        Self {
+            places: PlaceSet::EMPTY,
+            p: [Lanes::splat(0.0); 3],
+            normal: [Lanes::splat(0.0); 3],
+            bound: Lanes::splat(0.0),
+            prim: Lanes::splat(NO_HIT),
+            weights: [Lanes::splat(0.0); 2],
+        }
+    }
+}
+
+impl<const N: usize> DisplacedLanes<N> {
+    /// Puts a point into a place.
+    pub fn put(&mut self, place: usize, p: Vec3, normal: Vec3, bound: f32) {
+        for axis in 0..3 {
+            self.p[axis].0[place] = p[axis];
+            self.normal[axis].0[place] = normal[axis];
+        }
+        self.bound.0[place] = bound;
+        self.places.insert(place);
+    }
 }
 
 /// No triangle.
@@ -192,6 +239,7 @@ impl<const N: usize> HitLanes<N> {
             prim: Lanes::splat(NO_HIT),
             u: Lanes::splat(0.0),
             v: Lanes::splat(0.0),
+            displaced: None,
         }
     }
 }

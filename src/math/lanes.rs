@@ -99,6 +99,11 @@ impl<const W: usize> PlaceSet<W> {
         self.0[place / 64] |= 1 << (place % 64);
     }
 
+    /// Takes a place out.
+    pub const fn remove(&mut self, place: usize) {
+        self.0[place / 64] &= !(1 << (place % 64));
+    }
+
     /// All places in order.
     pub fn iter(&self) -> impl Iterator<Item = usize> {
         let words = self.0.into_iter().enumerate();

@@ -10,5 +10,6 @@ pub mod metrics;
 mod picture;
 pub mod profile_drawing;
 pub mod report_equations;
+pub mod stage_clock;
 
 pub use picture::{picture_from_image, read_picture};

@@ -1,15 +1,19 @@
 //! A snapshot made ready for tiles: everything in internal units, every choice made.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use super::Snapshot;
 use super::material::FrameMaterial;
-use crate::geometry::TriangleMesh;
 use crate::geometry::bvh::Bvh;
+use crate::geometry::{TriangleAttributes, TriangleMesh};
 use crate::math::simd::SimdLevel;
 use crate::math::{LinearRgb, Real, V3};
-use crate::scene::{Background, ShadingModel};
+use crate::scene::{Background, BentNormals, Scene, ShadingModel};
 use crate::shading::{Falloff, LightKind};
+use crate::surface::displaced::{DisplacedMesh, Displacement, Reliefs};
+use crate::surface::mapping::relief::ReliefField;
 
 /// Camera rays of a pinhole in internal units (report 2.1–2.3 with rotation; pixel row 0 on top).
 #[derive(Debug, Clone, Copy)]
@@ -65,8 +69,12 @@ pub struct Frame<'a> {
     pub materials: Vec<FrameMaterial<'a>>,
     /// Whether any material has holes.
     pub has_cutouts: bool,
+    /// The reliefs that are geometry of their own, if there are any.
+    pub displaced: Option<FrameDisplacement<'a>>,
     /// Reflection model.
     pub model: ShadingModel,
+    /// Normals bent by maps.
+    pub bent_normals: BentNormals,
     /// Whether shadow rays are traced.
     pub shadows: bool,
     /// Mirror bounces at the most.
@@ -97,14 +105,30 @@ impl<'a> Frame<'a> {
             lights: frame_lights(snapshot),
             ambient: ambient(snapshot),
             has_cutouts: materials.iter().any(|m| m.opacity.is_some()),
+            displaced: FrameDisplacement::new(scene, &materials, settings.mapping.weld_seams),
             materials,
             model: settings.shading.model,
+            bent_normals: settings.shading.bent_normals,
             shadows: settings.shading.shadows,
             max_bounces: settings.shading.max_bounces,
             background: settings.shading.background,
             scale: scene.normalization.scale,
             up: settings.camera.up.normalize_or(glam::DVec3::Z).as_vec3(),
         }
+    }
+
+    /// Whether triangles of this kind are displaced, so that they are not there themselves.
+    #[inline]
+    #[must_use]
+    pub fn displaces(&self, attributes: TriangleAttributes) -> bool {
+        let material = || &self.materials[usize::from(attributes.material)];
+        self.displaced.is_some() && attributes.has_uv && material().relief.is_some()
+    }
+
+    /// Whether triangles of the tree may not be there.
+    #[must_use]
+    pub const fn has_holes(&self) -> bool {
+        self.has_cutouts || self.displaced.is_some()
     }
 
     /// What a ray sees that leaves the scene in the unit direction `dir`.
@@ -119,6 +143,48 @@ impl<'a> Frame<'a> {
         let height = dir.dot(V3::splat(like, self.up)) * 0.5 + 0.5;
         let height = height.larger(like.splat(0.0)).smaller(like.splat(1.0));
         LinearRgb::splat(like, bottom) + LinearRgb::splat(like, top - bottom) * height
+    }
+}
+
+/// Reliefs that are geometry of their own.
+#[derive(Debug)]
+pub struct FrameDisplacement<'a> {
+    /// One for each material.
+    fields: Vec<Option<ReliefField<'a>>>,
+    weld_seams: bool,
+    /// What was made of them and the mesh.
+    pub displacement: Arc<Displacement>,
+}
+
+impl<'a> FrameDisplacement<'a> {
+    /// `None` if no material has such a relief.
+    fn new(scene: &'a Scene, materials: &[FrameMaterial<'a>], weld_seams: bool) -> Option<Self> {
+        materials.iter().any(|m| m.relief.is_some()).then(|| {
+            let fields: Vec<_> = materials.iter().map(|m| m.relief).collect();
+            let reliefs = Reliefs {
+                fields: &fields,
+                weld_seams,
+            };
+            let displacement = scene.displaced.get(&scene.mesh, &reliefs);
+            Self {
+                fields,
+                weld_seams,
+                displacement,
+            }
+        })
+    }
+
+    /// Everything that tracing needs.
+    #[must_use]
+    pub fn mesh<'f>(&'f self, mesh: &'f TriangleMesh) -> DisplacedMesh<'f, 'a> {
+        DisplacedMesh {
+            mesh,
+            reliefs: Reliefs {
+                fields: &self.fields,
+                weld_seams: self.weld_seams,
+            },
+            displacement: &self.displacement,
+        }
     }
 }
 

@@ -6,8 +6,9 @@ use crate::math::{LinearRgb, Real, V2};
 use crate::scene::Scene;
 use crate::shading::Material;
 use crate::surface::SurfaceParts;
+use crate::surface::mapping::relief::ReliefField;
 use crate::surface::mapping::{
-    BoundHeight, BoundNormal, MappingSettings, MaterialMapping, MaterialMaps,
+    BoundHeight, BoundNormal, MappingSettings, MaterialMapping, MaterialMaps, Method,
 };
 use crate::texture::{Addressing, ColorMap, HeightMap, MapRole, MapSlot};
 
@@ -78,6 +79,8 @@ pub struct FrameMaterial<'a> {
     pub opacity: Option<BoundOpacity<'a>>,
     /// What the maps do to the surface.
     pub mapping: MaterialMapping<'a>,
+    /// The relief that is geometry of its own.
+    pub relief: Option<ReliefField<'a>>,
 }
 
 impl<'a> FrameMaterial<'a> {
@@ -129,6 +132,7 @@ impl<'a> FrameMaterial<'a> {
             }),
             opacity: slot(MapRole::Opacity).map(|s| bind_opacity(s, scene)),
             mapping: MaterialMapping::choose(mapping, &maps),
+            relief: displaced(mapping, &maps),
         }
     }
 
@@ -141,6 +145,13 @@ impl<'a> FrameMaterial<'a> {
             _ => SurfaceParts::Plain,
         }
     }
+}
+
+/// The relief that is geometry of its own, if the method wants one.
+fn displaced<'a>(mapping: &MappingSettings, maps: &MaterialMaps<'a>) -> Option<ReliefField<'a>> {
+    let height = maps.height.filter(|h| h.scale != 0.0 || h.offset != 0.0)?;
+    let wanted = mapping.method == Method::Displacement && mapping.use_height;
+    ReliefField::new(height, maps.pyramid?).filter(|_| wanted)
 }
 
 /// The amplitude in force, world units: the material's own, else the scene's, else the material's

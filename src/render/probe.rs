@@ -13,6 +13,9 @@ use super::{Counters, Frame, Snapshot};
 use crate::geometry::triangle::Watertight;
 use crate::geometry::{Hit, Ray, offset_by_bound};
 use crate::math::{LinearRgb, V3, gamma, srgb8_from_linear};
+use crate::scene::BentNormals;
+use crate::shading::softened_horizon;
+use crate::surface::displaced::{Search, SurfaceHit, Tracer};
 use crate::surface::mapping::relief::is_shadowed;
 use crate::surface::{SurfaceInteraction, SurfaceParts, surface_at};
 
@@ -146,7 +149,8 @@ pub fn probe(snapshot: &Snapshot, pixel: [u32; 2]) -> Option<PixelStory> {
     for index in 0..=frame.max_bounces {
         let counters = &mut Counters::default();
         let (ray, weight) = (work.rays.lanes.ray(0), work.rays.weight.0[0]);
-        trace::closest_hits(&frame, &work.rays, &mut hits, counters);
+        let tracer = &mut work.tracer;
+        trace::closest_hits(&frame, &mut work.rays, &mut hits, tracer, counters);
         work.shade_hits(
             &frame,
             &hits,
@@ -201,7 +205,8 @@ pub(super) fn first_hit(
     let mut work = Scratch::default().work;
     aim(frame, snapshot, pixel, &mut work.rays)?;
     let ray = work.rays.lanes.ray(0);
-    Some((ray, nearest(frame, &ray, f32::INFINITY)))
+    let found = nearest(frame, &ray, f32::INFINITY);
+    Some((ray, found.map(|found| found.hit)))
 }
 
 /// The colour in the first place.
@@ -228,26 +233,68 @@ fn one_bounce(
             .to_array(),
         dir: ray.dir.to_array(),
         weight,
-        hit: hit.map(|hit| hit_story(snapshot, frame, ray, &hit)),
+        hit: hit.map(|found| hit_story(snapshot, frame, ray, &found)),
         color,
     }
 }
 
-/// The nearest solid thing on a ray.
-fn nearest(frame: &Frame<'_>, ray: &Ray, t_max: f32) -> Option<Hit> {
-    let tests = trace::CutoutTests::default();
-    let solid = |prim, u, v| tests.is_solid(frame, prim, u, v);
-    frame.bvh.intersect::<Watertight, _>(ray, t_max, &solid)
+/// A hit, and the point if it lies on a displaced surface.
+struct Nearest {
+    hit: Hit,
+    displaced: Option<SurfaceHit>,
 }
 
-fn hit_story(snapshot: &Snapshot, frame: &Frame<'_>, ray: &Ray, hit: &Hit) -> HitStory {
+/// The nearest solid thing on a ray.
+fn nearest(frame: &Frame<'_>, ray: &Ray, t_max: f32) -> Option<Nearest> {
+    let tests = trace::CutoutTests::default();
+    let solid = |prim, u, v| tests.is_solid(frame, prim, u, v);
+    let displaced = frame.displaced.as_ref().and_then(|relief| {
+        let mesh = relief.mesh(frame.mesh);
+        let mut tracer = Tracer::default();
+        tracer.push(*ray, t_max);
+        tracer.run(mesh, Search::Closest, frame.level);
+        tracer.hit(mesh, 0)
+    });
+    let t_max = displaced.map_or(t_max, |hit| hit.t);
+    let plain = frame.bvh.intersect::<Watertight, _>(ray, t_max, &solid);
+    match (plain, displaced) {
+        (Some(hit), _) => Some(Nearest {
+            hit,
+            displaced: None,
+        }),
+        (None, Some(point)) => Some(Nearest {
+            hit: Hit {
+                t: point.t,
+                prim: point.prim,
+                sub: 0,
+                u: point.weights[0],
+                v: point.weights[1],
+            },
+            displaced: Some(point),
+        }),
+        (None, None) => None,
+    }
+}
+
+fn hit_story(snapshot: &Snapshot, frame: &Frame<'_>, ray: &Ray, found: &Nearest) -> HitStory {
+    let hit = &found.hit;
     let normalization = &snapshot.scene.normalization;
     let attributes = frame.mesh.attributes[hit.prim as usize];
     let index = usize::from(attributes.material);
     let material = &frame.materials[index];
     let parts = material.parts(attributes.has_uv);
-    let plain = surface_at(frame.mesh, hit, ray, parts);
+    let mut plain = surface_at(frame.mesh, hit, ray, parts);
+    if let Some(point) = &found.displaced {
+        let n = point.normal.abs();
+        plain.p = point.p.into();
+        // As the bound along the normal, spread over the axes.
+        plain.p_error = (n * (point.bound / n.length_squared())).into();
+        plain.n_geo = point.normal.into();
+    }
     let mut mapped = plain;
+    if found.displaced.is_some() {
+        mapped.n_shade = plain.n_geo;
+    }
     let diffuse = surface::perturb(material, parts, &mut mapped, true);
     let has_uv = parts > SurfaceParts::Plain;
     let front = plain.wo.dot(plain.n_geo) >= 0.0;
@@ -303,20 +350,23 @@ fn light_story(
         return None;
     }
     let (wi, distance) = (arriving.wi, arriving.distance);
-    let irradiance = light.irradiance * arriving.falloff;
+    let mut irradiance = light.irradiance * arriving.falloff;
+    if frame.bent_normals == BentNormals::Softened {
+        irradiance = irradiance * softened_horizon(s.n_geo, s.n_shade, wi);
+    }
     let (cos_geo, cos_shade) = (s.n_geo.dot(wi), s.n_shade.dot(wi));
     let visibility = if !(cos_geo > 0.0 && cos_shade > 0.0) {
         Visibility::Behind
     } else if frame.shadows && is_shadowed_by_relief(frame, s, wi, material) {
         Visibility::ShadowedByRelief
-    } else if let Some(hit) = frame
+    } else if let Some(found) = frame
         .shadows
         .then(|| occluder(frame, s, (wi, distance), smooth))
         .flatten()
     {
         Visibility::Shadowed {
-            triangle: hit.prim,
-            t: normalization.world_length(hit.t),
+            triangle: found.hit.prim,
+            t: normalization.world_length(found.hit.t),
         }
     } else {
         Visibility::Visible
@@ -363,7 +413,7 @@ fn occluder(
     s: &SurfaceInteraction,
     (wi, distance): (V3, f32),
     smooth: bool,
-) -> Option<Hit> {
+) -> Option<Nearest> {
     let way_out = stages::relief::way_out((s.sunk, s.n_geo), s.wo, wi, smooth);
     let rounding = way_out.abs().dot(s.n_geo.abs()) * gamma(8);
     let bound = s.n_geo.abs().dot(s.p_error) + rounding;

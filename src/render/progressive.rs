@@ -8,6 +8,7 @@ use super::stages::{Scratch, StageWatch};
 use super::{Counters, Frame};
 use crate::math::{LinearRgb, SrgbEncoder};
 use crate::scene::{RenderSettings, Scene};
+use crate::surface::mapping::{MappingSettings, Method};
 use crate::texture::MapRole;
 
 /// What to render: everything a pass depends on besides its number.
@@ -125,17 +126,18 @@ impl Progressive {
     /// Renders the next sample of every pixel; `stop` is polled before each tile. Does nothing once the
     /// picture has converged.
     pub fn pass(&mut self, stop: &(dyn Fn() -> bool + Sync)) -> PassEnd {
+        self.watched_pass::<()>(stop).0
+    }
+
+    /// [`pass`](Self::pass) with a listener in each worker that is told of its stages.
+    pub fn watched_pass<W: StageWatch + Default + Send>(
+        &mut self,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> (PassEnd, Vec<W>) {
         let wanted = self.snapshot.as_ref().map_or(0, samples_wanted);
         // Tiles that a stopped pass had done already are ahead.
         let goal = (self.samples() + 1).min(wanted);
-        self.render::<()>(&self.film, goal, stop).0
-    }
-
-    /// [`pass`](Self::pass) to the end, with a listener in each worker that is told of its stages.
-    pub fn watched_pass<W: StageWatch + Default + Send>(&mut self) -> Vec<W> {
-        let wanted = self.snapshot.as_ref().map_or(0, samples_wanted);
-        let goal = (self.samples() + 1).min(wanted);
-        self.render(&self.film, goal, &|| false).1
+        self.render(&self.film, goal, stop)
     }
 
     /// Brings all tiles of a film to `goal` samples. `stop` is asked only before tiles that need one, so
@@ -319,8 +321,27 @@ fn same_visibility(a: &Snapshot, b: &Snapshot) -> bool {
             .map(|m| m.map(MapRole::Opacity).cloned())
             .collect()
     };
+    let displaced = |s: &Snapshot| {
+        let MappingSettings {
+            method,
+            amplitude,
+            midlevel,
+            use_height,
+            weld_seams,
+            ..
+        } = s.settings.mapping;
+        let heights = s.settings.materials.iter().map(|m| {
+            let map = m.map(MapRole::Height).cloned();
+            (map, m.amplitude, m.default_amplitude, m.midlevel)
+        });
+        (method == Method::Displacement && use_height).then(|| {
+            let heights: Vec<_> = heights.collect();
+            (amplitude, midlevel, weld_seams, heights)
+        })
+    };
     Arc::ptr_eq(&a.scene, &b.scene)
         && a.size == b.size
         && a.settings.camera == b.settings.camera
         && cutouts(a) == cutouts(b)
+        && displaced(a) == displaced(b)
 }

@@ -52,13 +52,15 @@ fn walk(
         if kind == RayKind::Camera || (kind == RayKind::Mirror && index == frame.max_bounces) {
             return;
         }
-        trace::closest_hits(frame, &work.rays, hits, counters);
-        surface::mapped_surfaces(frame, &work.rays, hits, &mut work.surfaces, counters);
+        trace::closest_hits(frame, &mut work.rays, hits, &mut work.tracer, counters);
+        let hit = (&work.rays, &**hits);
+        surface::mapped_surfaces(frame, hit, &mut work.surfaces, &mut work.walks, counters);
         let lights = frame.lights.iter().filter(|light| is_sent_to(kind, light));
         for light in lights.filter(|_| frame.shadows) {
             let shadows = &mut work.shadows;
             light::aim_at_light(frame, light, mirrors, (&work.rays, &work.surfaces), shadows);
-            relief::shadow_by_relief(frame, &work.surfaces, shadows, counters);
+            let walks = &mut work.walks;
+            relief::shadow_by_relief(frame, &work.surfaces, shadows, walks, counters);
             add(&shadows.rays, shadows.lit);
         }
         work.rays.active = bounce::turn_to_mirror_rays(frame, &mut work.rays, hits, &work.surfaces);

@@ -76,14 +76,17 @@ impl Tile {
         let hits = if index == 0 { &mut self.hits } else { hits };
         if index > 0 || !self.knows_hits {
             known.clear();
-            if let Some(film) = coarser.filter(|_| index == 0) {
+            // Hits on displaced surfaces are more than a cached hit can tell.
+            let coarser = coarser.filter(|_| index == 0 && frame.displaced.is_none());
+            if let Some(film) = coarser {
                 film.hits_for(&self.pixels, known);
             }
             for &(place, _) in &*known {
                 work.rays.lanes.t_max.0[place] = -1.0;
             }
             counters.camera_rays += self.pixels.active.count() - known.len() as u64;
-            trace::closest_hits(frame, &work.rays, hits, counters);
+            let tracer = &mut work.tracer;
+            trace::closest_hits(frame, &mut work.rays, hits, tracer, counters);
             for &(place, hit) in &*known {
                 hits.put(place, hit);
             }

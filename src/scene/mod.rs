@@ -16,11 +16,14 @@ use glam::DVec3;
 
 use crate::geometry::bvh::Bvh;
 use crate::geometry::{Normalization, TriangleMesh};
+use crate::surface::displaced::DisplacementCell;
 use crate::texture::MapImage;
 
 pub use camera::{Camera, CameraAxes};
 pub use open::{built_in_names, open};
-pub use settings::{Background, DisplaySettings, RenderSettings, ShadingModel, ShadingSettings};
+pub use settings::{
+    Background, BentNormals, DisplaySettings, RenderSettings, ShadingModel, ShadingSettings,
+};
 pub use warning::{LoadError, LoadWarning};
 
 /// Where a scene came from.
@@ -68,6 +71,8 @@ pub struct Scene {
     pub images: Vec<MapImage>,
     /// What the model's file says.
     pub facts: ModelFacts,
+    /// The displaced surface that was asked for last.
+    pub displaced: DisplacementCell,
 }
 
 /// A scene with the settings it starts from and what was doubtful about it.

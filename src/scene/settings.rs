@@ -39,6 +39,33 @@ impl ShadingModel {
     }
 }
 
+/// What is done about normals that maps have bent away from the surface under them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BentNormals {
+    /// Nothing: mirror rays may run into the surface, and light ends abruptly at its horizon.
+    Textbook,
+    /// Mirror rays that would run into the surface are lifted until they leave it (Keller et al. 2017).
+    #[default]
+    Lifted,
+    /// Lifted, and light fades out towards the horizon of the surface (Chiang et al. 2019).
+    Softened,
+}
+
+impl BentNormals {
+    /// All, for menus and tests.
+    pub const ALL: [Self; 3] = [Self::Textbook, Self::Lifted, Self::Softened];
+
+    /// Name in scene files and menus.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Textbook => "textbook",
+            Self::Lifted => "lifted",
+            Self::Softened => "softened",
+        }
+    }
+}
+
 /// What rays see that leave the scene: a vertical gradient along the camera's up direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Background {
@@ -64,6 +91,8 @@ impl Background {
 pub struct ShadingSettings {
     /// Reflection model.
     pub model: ShadingModel,
+    /// Normals bent by maps.
+    pub bent_normals: BentNormals,
     /// Whether shadow rays are traced.
     pub shadows: bool,
     /// Mirror bounces at the most; 0 shows no reflections.
@@ -76,6 +105,7 @@ impl Default for ShadingSettings {
     fn default() -> Self {
         Self {
             model: ShadingModel::Normalized,
+            bent_normals: BentNormals::Lifted,
             shadows: true,
             max_bounces: 3,
             background: Background::plain(LinearRgb::BLACK),

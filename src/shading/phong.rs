@@ -26,6 +26,24 @@ pub fn phong_lobe<F: Real>(r: V3<F>, v: V3<F>, exponent: f32) -> (F, F::Mask) {
     (F::select(faces, lobe, zero), faces)
 }
 
+/// Share of the light from the unit direction `wi` that a bent normal keeps: 1 far from the horizon of the
+/// geometric surface, falling smoothly to 0 at it, where otherwise a lit slope would end in a hard edge.
+///
+/// `G = −g³ + g² + g` with `g = min(1, (N_g·L) / ((N·L) (N·N_g)))`. Both cosines with the light must be
+/// above 0.
+///
+/// Source: Chiang, Li and Burley 2019, "Taming the Shadow Terminator".
+#[inline(always)]
+#[must_use]
+pub fn softened_horizon<F: Real>(n_geo: V3<F>, n_shade: V3<F>, wi: V3<F>) -> F {
+    let one = wi.x.splat(1.0);
+    let bent = n_shade.dot(wi) * n_shade.dot(n_geo);
+    let g = n_geo.dot(wi) / bent;
+    // A normal bent beyond the surface, or by nothing: no edge to soften.
+    let g = F::select(bent.gt(one.splat(0.0)), g.smaller(one), one);
+    ((one - g) * g + one) * g
+}
+
 /// Direction of the mirror ray for an eye in direction `wo`, lifted so that it never enters the surface.
 ///
 /// A tilted normal can send the mirror image of the eye below the geometric surface. Then the direction

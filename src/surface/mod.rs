@@ -1,5 +1,6 @@
 //! A hit point in full, and what the maps do to it.
 
+pub mod displaced;
 mod facet;
 mod hit_point;
 mod interaction;

@@ -472,6 +472,7 @@ impl ViewerApp {
 
     fn panel_ui(&mut self, ctx: &egui::Context, window: Rect) {
         let mut actions = Vec::new();
+        self.state.stats = *self.framebuffer.stats();
         if let Some(doc) = self.doc.as_mut().filter(|_| self.preferences.panel) {
             let mut panel = PanelContext {
                 doc,

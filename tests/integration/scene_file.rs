@@ -11,7 +11,7 @@ use reliefscope::scene::file::{SaveError, SceneView, apply_overrides, read_scene
 use reliefscope::scene::load::LoadOptions;
 use reliefscope::scene::save_picture::write_png;
 use reliefscope::scene::{
-    Background, Camera, LoadError, LoadedScene, SceneSource, ShadingModel, open,
+    Background, BentNormals, Camera, LoadError, LoadedScene, SceneSource, ShadingModel, open,
 };
 use reliefscope::shading::{Falloff, Light, LightKind, Material};
 use reliefscope::surface::mapping::{Derivative, Lookup, Method, SearchSettings};
@@ -236,6 +236,7 @@ impl Random {
                 .push(Light::new(self.text(), LightKind::Ambient, self.size()));
         }
         settings.shading.model = self.of(&ShadingModel::ALL);
+        settings.shading.bent_normals = self.of(&BentNormals::ALL);
         settings.shading.shadows = self.flag();
         settings.shading.max_bounces = self.below(65);
         let top = self.color();
@@ -252,6 +253,7 @@ impl Random {
         mapping.use_height = self.flag();
         mapping.use_normal = self.flag();
         mapping.use_parallax = self.flag();
+        mapping.weld_seams = self.flag();
         mapping.search = SearchSettings {
             layers: 1 + self.below(4096),
             min_layers: 1 + self.below(4096),

@@ -97,6 +97,7 @@ impl QuadScene {
             }
         }
         let scene = Scene {
+            displaced: Default::default(),
             name: "quad".into(),
             source: SceneSource::BuiltIn("quad".into()),
             bvh: Bvh::build(&mesh),

@@ -3,6 +3,7 @@
 //! - `build`: a binary tree by the surface area heuristic, in parallel, the same for any thread count
 //! - `collapse`: from two children per node to eight
 //! - `node`: what lies in memory
+//! - `boxes`: the same nodes over boxes of any content
 //! - `single`: one ray at a time, closest hit and any hit
 //! - `many`: a tile's worth of rays; what runs alike goes as a bundle
 //! - `bundle`, `query`: a bundle's path through the tree, and what its rays have found
@@ -11,6 +12,7 @@
 //! A tree never changes an answer: whatever its shape, it reports the triangle, `t`, `u` and `v` that
 //! testing every triangle would, bit for bit (see [`RaySlabs`](super::RaySlabs)).
 
+mod boxes;
 mod build;
 mod bundle;
 mod collapse;
@@ -29,6 +31,7 @@ use super::{Aabb, TriangleMesh};
 use crate::math::simd::{SimdLevel, UnsupportedLevel, simd_level};
 use node::{Block, ChildRef, Node};
 
+pub use boxes::{BoxTree, BoxesAlong};
 pub use single::{AcceptAll, HitFilter};
 pub use stats::BvhStats;
 
@@ -137,6 +140,12 @@ impl Bvh {
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.triangles == 0
+    }
+
+    /// Heap bytes of nodes and leaves.
+    #[must_use]
+    pub const fn bytes(&self) -> usize {
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.blocks.as_slice())
     }
 
     /// Whether both have the same nodes and leaves in the same order.

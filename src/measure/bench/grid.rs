@@ -76,6 +76,7 @@ pub(super) fn grid_snapshot(mesh: TriangleMesh, bvh: Bvh, size: [u32; 2]) -> Sna
         bvh,
         normalization: Normalization::IDENTITY,
         images: Vec::new(),
+        displaced: crate::surface::displaced::DisplacementCell::default(),
         facts: ModelFacts::default(),
     };
     let mut material = Material::matte("grid", LinearRgb::new(0.6, 0.6, 0.6));

@@ -1,9 +1,10 @@
 //! Where the time of a pass goes, by stage.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::Spread;
-use crate::render::{Progressive, Stage, StageWatch};
+use crate::measure::stage_clock::StageClock;
+use crate::render::Progressive;
 
 /// Thread time of a pass by stage: what the workers' clocks show between the stages of a tile, summed over all
 /// workers. It is wall-clock time within each, so that it counts pauses that the system imposes.
@@ -32,17 +33,13 @@ impl StageLog {
     /// Renders and notes one pass.
     pub fn pass(&mut self, renderer: &mut Progressive) {
         let began = Instant::now();
-        let clocks = renderer.watched_pass::<StageClock>();
+        let clocks = renderer.watched_pass::<StageClock>(&|| false).1;
         let whole = began.elapsed().as_secs_f64() * clocks.len() as f64;
-        let spent = |stage: usize| -> f64 {
-            let all = clocks.iter().map(|clock| clock.spent[stage]);
-            all.sum::<Duration>().as_secs_f64()
-        };
-        let spent = [0, 1, 2, 3].map(spent);
+        let spent = StageClock::sum_millis(&clocks);
         for (times, spent) in self.times.iter_mut().zip(spent) {
-            times.push(spent * 1e3);
+            times.push(spent);
         }
-        let share = spent.iter().sum::<f64>() / whole.max(f64::MIN_POSITIVE);
+        let share = spent.iter().sum::<f64>() * 1e-3 / whole.max(f64::MIN_POSITIVE);
         self.share.push(share);
     }
 
@@ -57,32 +54,5 @@ impl StageLog {
             resolve,
             share: warm(self.share),
         }
-    }
-}
-
-/// One worker's clock.
-struct StageClock {
-    last: Instant,
-    spent: [Duration; 4],
-}
-
-impl Default for StageClock {
-    fn default() -> Self {
-        Self {
-            last: Instant::now(),
-            spent: [Duration::ZERO; 4],
-        }
-    }
-}
-
-impl StageWatch for StageClock {
-    fn begin(&mut self) {
-        self.last = Instant::now();
-    }
-
-    fn done(&mut self, stage: Stage) {
-        let now = Instant::now();
-        self.spent[stage as usize] += now - self.last;
-        self.last = now;
     }
 }

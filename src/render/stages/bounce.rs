@@ -9,7 +9,8 @@ use crate::geometry::{HitLanes, offset_by_bound};
 use crate::math::simd::{Kernel, Simd};
 use crate::math::wide::Wide;
 use crate::math::{Real as _, gamma};
-use crate::shading::mirror_direction;
+use crate::scene::BentNormals;
+use crate::shading::{mirror_direction, reflect};
 
 /// A mirror ray with a smaller share of its pixel than this is not followed: half a step of 8 bits.
 const MIN_WEIGHT: f32 = 1.0 / 512.0;
@@ -110,7 +111,11 @@ impl Kernel for MirrorRays<'_> {
                 let n_geo = get3(simd, &from.n_geo, group);
                 let n_shade = get3(simd, &from.n_shade, group);
                 let wo = -get3(simd, &to.lanes.dir, group);
-                let dir = mirror_direction(n_shade, n_geo, wo);
+                let dir = if self.frame.bent_normals == BentNormals::Textbook {
+                    reflect(n_shade, wo)
+                } else {
+                    mirror_direction(n_shade, n_geo, wo)
+                };
                 let mut p = get3(simd, &from.p, group);
                 let mut bound = from.bound.get(simd, group);
                 if self.frame.materials[run.material].mapping.searches() {

@@ -7,6 +7,7 @@ use super::super::material::FrameMaterial;
 use super::super::{Counters, Frame};
 use super::relief;
 use super::trace::any_hits;
+use super::walks::Walks;
 use super::{
     Column, Mirrors, PLACES, Places, Rays, Shadows, Stage, StageWatch, Surfaces, get_rgb, get3,
     groups, set, set_rgb, set3,
@@ -15,8 +16,9 @@ use crate::geometry::{HitLanes, offset_by_bound};
 use crate::math::simd::{Kernel, Simd};
 use crate::math::wide::Wide;
 use crate::math::{LinearRgb, Real, V3, gamma};
-use crate::scene::ShadingModel;
-use crate::shading::{Falloff, phong_lobe, reflect};
+use crate::scene::{BentNormals, ShadingModel};
+use crate::shading::{Falloff, phong_lobe, reflect, softened_horizon};
+use crate::surface::displaced::Tracer;
 
 /// Shadow rays end this share short of the light, so that a mesh around the lamp does not shadow it by
 /// rounding.
@@ -31,7 +33,7 @@ pub fn reflected_light(
     mirrors: Mirrors,
     (rays, hits): (&Rays, &HitLanes<PLACES>),
     surfaces: &mut Surfaces,
-    shadows: &mut Shadows,
+    (shadows, (walks, tracer)): (&mut Shadows, (&mut Walks, &mut Tracer)),
     counters: &mut Counters,
     watch: &mut impl StageWatch,
 ) {
@@ -46,11 +48,11 @@ pub fn reflected_light(
         shadows.occluded = Places::EMPTY;
         if frame.shadows {
             watch.done(Stage::Shade);
-            relief::shadow_by_relief(frame, surfaces, shadows, counters);
+            relief::shadow_by_relief(frame, surfaces, shadows, walks, counters);
             watch.done(Stage::Perturb);
         }
         if frame.shadows && !shadows.lit.is_empty() {
-            any_hits(frame, rays.count, shadows, counters);
+            any_hits(frame, rays.count, shadows, tracer, counters);
             watch.done(Stage::Trace);
         }
         frame.level.run_or_plain(AddLight {
@@ -230,7 +232,13 @@ impl Kernel for AddLight<'_> {
                     get3(simd, &self.shadows.rays.dir, group),
                 );
                 powers.add(group, response.took_power & mask);
-                let falloff = self.shadows.falloff.get(simd, group);
+                let mut falloff = self.shadows.falloff.get(simd, group);
+                if self.frame.bent_normals == BentNormals::Softened {
+                    let n_geo = get3(simd, &surfaces.n_geo, group);
+                    let n_shade = get3(simd, &surfaces.n_shade, group);
+                    let wi = get3(simd, &self.shadows.rays.dir, group);
+                    falloff = falloff * softened_horizon(n_geo, n_shade, wi);
+                }
                 let sum = get_rgb(simd, &surfaces.reflected, group)
                     + irradiance * falloff * response.sum();
                 set_rgb(&mut surfaces.reflected, group, mask, sum);

@@ -8,13 +8,16 @@
 
 pub mod bounce;
 pub mod camera;
+pub mod displaced;
 pub mod film;
 pub mod light;
 pub mod relief;
 pub mod surface;
 pub mod trace;
+mod walks;
 mod watch;
 
+pub use walks::Walks;
 pub use watch::{Stage, StageWatch};
 
 use super::{Counters, Frame};
@@ -24,6 +27,7 @@ use crate::math::simd::{Simd, SimdBase as _};
 use crate::math::wide::{Wide, WideMask};
 use crate::math::{LinearRgb, Real as _, V3};
 use crate::surface::FacetKind;
+use crate::surface::displaced::Tracer;
 
 /// Places in a tile's arrays: a pixel each.
 pub const PLACES: usize = 1024;
@@ -77,6 +81,8 @@ pub struct Run {
     pub material: usize,
     /// What of the triangles is read.
     pub kind: FacetKind,
+    /// Whether they lie on a displaced surface, so that the hits know point and normal.
+    pub displaced: bool,
     /// Where they are.
     pub places: Places,
 }
@@ -91,6 +97,13 @@ pub struct ReliefPoints {
     pub steps: Column,
     /// Texture coordinates found.
     pub uv: [Column; 2],
+    /// Change of the texture coordinate along the view ray per unit of displacement, displacement found,
+    /// and where a walk means something. Only where points are walked for together.
+    pub per_z: [Column; 2],
+    /// See `per_z`.
+    pub z: Column,
+    /// See `per_z`.
+    pub usable: Places,
     /// Smooth normals before the maps, on the front side.
     pub n_smooth: Column3,
     /// Gradients of u.
@@ -153,6 +166,10 @@ pub struct Work {
     pub surfaces: Surfaces,
     /// One light at a time.
     pub shadows: Shadows,
+    /// Rays against displaced surfaces.
+    pub tracer: Tracer,
+    /// Walks over one relief at a time.
+    pub walks: Walks,
     /// Sum of each sample.
     pub radiance: Column3,
 }
@@ -182,6 +199,9 @@ impl Default for Scratch {
                         sunk: Column::splat(0.0),
                         steps: Column::splat(0.0),
                         uv: [Column::splat(0.0); 2],
+                        per_z: [Column::splat(0.0); 2],
+                        z: Column::splat(0.0),
+                        usable: Places::EMPTY,
                         n_smooth: ZEROS,
                         grad_u: ZEROS,
                         grad_v: ZEROS,
@@ -193,6 +213,8 @@ impl Default for Scratch {
                     falloff: Column::splat(0.0),
                     occluded: Places::EMPTY,
                 },
+                tracer: Tracer::default(),
+                walks: Walks::default(),
                 radiance: ZEROS,
             }),
         }
@@ -210,10 +232,11 @@ impl Work {
         counters: &mut Counters,
         watch: &mut impl StageWatch,
     ) {
-        let (rays, surfaces) = (&mut self.rays, &mut self.surfaces);
-        surface::mapped_surfaces(frame, rays, hits, surfaces, counters);
+        let (rays, surfaces, walks) = (&mut self.rays, &mut self.surfaces, &mut self.walks);
+        surface::mapped_surfaces(frame, (rays, hits), surfaces, walks, counters);
         watch.done(Stage::Perturb);
-        let (shadows, hit) = (&mut self.shadows, (&*rays, hits));
+        let lists = (walks, &mut self.tracer);
+        let (shadows, hit) = ((&mut self.shadows, lists), (&*rays, hits));
         light::reflected_light(frame, mirrors, hit, surfaces, shadows, counters, watch);
         bounce::gather(frame, mirrors, rays, surfaces, &mut self.radiance);
         rays.active = match mirrors {
@@ -238,7 +261,7 @@ impl Scratch {
                 break;
             }
             counters.mirror_rays += work.rays.active.count();
-            trace::closest_hits(frame, &work.rays, hits, counters);
+            trace::closest_hits(frame, &mut work.rays, hits, &mut work.tracer, counters);
             watch.done(Stage::Trace);
             work.shade_hits(frame, hits, mirrors_at(frame, bounce), counters, watch);
         }

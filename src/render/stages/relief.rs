@@ -2,11 +2,13 @@
 //! shadows.
 
 use super::super::{Counters, Frame};
-use super::{Places, Shadows, Surfaces, get3};
-use crate::math::simd::{Kernel, Simd, SimdBase as _};
+use super::walks::Walks;
+use super::{Column, Places, Shadows, Surfaces, get3};
+use crate::math::simd::{Kernel, Simd};
 use crate::math::wide::Wide;
-use crate::math::{Real, V2, V3};
-use crate::surface::mapping::relief::is_shadowed;
+use crate::math::{Real, V3};
+use crate::surface::SurfaceParts;
+use crate::surface::mapping::relief::{light_ray, rising_ray};
 
 /// From a point of a relief to where a ray from it in the direction `dir` starts on the mesh.
 ///
@@ -27,67 +29,90 @@ pub fn shadow_by_relief(
     frame: &Frame<'_>,
     surfaces: &Surfaces,
     shadows: &mut Shadows,
+    walks: &mut Walks,
     counters: &mut Counters,
 ) {
-    let shadowing = |material: usize| frame.materials[material].mapping.self_shadow().is_some();
-    if surfaces.runs.iter().any(|run| shadowing(run.material)) {
-        frame.level.run_or_plain(ShadowByRelief {
-            frame,
+    for run in &surfaces.runs {
+        let material = &frame.materials[run.material];
+        let Some(field) = material.mapping.self_shadow() else {
+            continue;
+        };
+        if run.kind.parts < SurfaceParts::Gradients {
+            continue;
+        }
+        let lit = run.places & shadows.lit;
+        counters.relief_shadow_walks += lit.count();
+        let mut rays = LightRays::default();
+        frame.level.run_or_plain(AimOverRelief {
             surfaces,
             shadows,
-            counters,
+            lit,
+            rays: &mut rays,
         });
+        walks.clear();
+        let uv = &surfaces.relief.uv;
+        for place in (lit & rays.up).iter() {
+            let per_z = [rays.per_z[0].0[place], rays.per_z[1].0[place]];
+            if let Some(ray) = rising_ray(field, [uv[0].0[place], uv[1].0[place]], per_z) {
+                walks.push(place, ray);
+            }
+        }
+        counters.relief_steps += walks.run(field, frame.level);
+        let in_the_way = walks.iter().filter(|(_, _, walk)| walk.at.is_some());
+        let shadowed = in_the_way.map(|(place, ..)| place);
+        for place in shadowed.chain((lit & rays.under).iter()) {
+            shadows.rays.t_max.0[place] = -1.0;
+            shadows.lit.remove(place);
+        }
     }
 }
 
-struct ShadowByRelief<'a> {
-    frame: &'a Frame<'a>,
-    surfaces: &'a Surfaces,
-    shadows: &'a mut Shadows,
-    counters: &'a mut Counters,
+/// Rays over the chart from a tile's points to one light.
+struct LightRays {
+    /// Change of the texture coordinate per unit of displacement.
+    per_z: [Column; 2],
+    /// Places that see the light over the relief's own surface; the others need no walk.
+    up: Places,
+    /// Places whose surface faces away from it.
+    under: Places,
 }
 
-impl Kernel for ShadowByRelief<'_> {
+impl Default for LightRays {
+    fn default() -> Self {
+        Self {
+            per_z: [Column::splat(0.0); 2],
+            up: Places::EMPTY,
+            under: Places::EMPTY,
+        }
+    }
+}
+
+struct AimOverRelief<'a> {
+    surfaces: &'a Surfaces,
+    shadows: &'a Shadows,
+    lit: Places,
+    rays: &'a mut LightRays,
+}
+
+impl Kernel for AimOverRelief<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let (from, to) = (&self.surfaces.relief, self.shadows);
-        let mut shadowed = Places::EMPTY;
-        let mut taken = 0.0;
-        for run in &self.surfaces.runs {
-            let Some(field) = self.frame.materials[run.material].mapping.self_shadow() else {
-                continue;
-            };
-            if run.kind.parts < crate::surface::SurfaceParts::Gradients {
-                continue;
-            }
-            let lit = run.places & to.lit;
-            self.counters.relief_shadow_walks += lit.count();
-            for group in lit.groups::<S>() {
-                // Where nothing was searched (the eye is behind the surface), nothing shadows.
-                let searched = from.steps.get(simd, group).gt(Wide::new(simd, 0.0));
-                let mask = lit.mask(simd, group) & searched;
-                let uv = V2::new(from.uv[0].get(simd, group), from.uv[1].get(simd, group));
-                let gradients = [
-                    get3(simd, &from.grad_u, group),
-                    get3(simd, &from.grad_v, group),
-                ];
-                let n = get3(simd, &from.n_smooth, group);
-                let wi = get3(simd, &to.rays.dir, group);
-                let (in_shadow, steps) = is_shadowed(field, mask, (uv, gradients, n), wi);
-                shadowed.add(group, in_shadow);
-                taken += steps
-                    .0
-                    .as_slice()
-                    .iter()
-                    .copied()
-                    .map(f64::from)
-                    .sum::<f64>();
-            }
+        let (from, to) = (&self.surfaces.relief, self.rays);
+        for group in self.lit.groups::<S>() {
+            // Where nothing was searched (the eye is behind the surface), nothing shadows.
+            let searched = from.steps.get(simd, group).gt(Wide::new(simd, 0.0));
+            let mask = self.lit.mask(simd, group) & searched;
+            let gradients = [
+                get3(simd, &from.grad_u, group),
+                get3(simd, &from.grad_v, group),
+            ];
+            let n = get3(simd, &from.n_smooth, group);
+            let wi = get3(simd, &self.shadows.rays.dir, group);
+            let (per_z, is_up) = light_ray(gradients, n, wi);
+            to.per_z[0].set(group, per_z.x);
+            to.per_z[1].set(group, per_z.y);
+            to.up.add(group, mask & is_up);
+            to.under.add(group, mask & !is_up);
         }
-        self.counters.relief_steps += taken as u64;
-        for place in shadowed.iter() {
-            to.rays.t_max.0[place] = -1.0;
-        }
-        to.lit = to.lit & !shadowed;
     }
 }

@@ -2,20 +2,24 @@
 
 use super::super::material::FrameMaterial;
 use super::super::{Counters, Frame};
-use super::{PLACES, Places, Rays, Run, Surfaces, get3, groups, set, set_rgb, set3};
+use super::walks::Walks;
+use super::{
+    Column, PLACES, Places, Rays, ReliefPoints, Run, Surfaces, get3, groups, set, set_rgb, set3,
+};
 use crate::geometry::{HitLanes, NO_HIT};
 use crate::math::lanes::ones;
-use crate::math::simd::{Kernel, Simd, SimdBase as _, SimdMask as _};
+use crate::math::simd::{Kernel, Simd, SimdBase as _, SimdLevel, SimdMask as _};
 use crate::math::wide::{Wide, WideBits, WideMask};
-use crate::math::{Bits as _, LinearRgb, Mask as _, Real as _, V3};
+use crate::math::{Bits as _, LinearRgb, Mask as _, Real as _, V2, V3};
+use crate::surface::mapping::relief::{ReliefField, found, landed, sinking_ray, view_ray};
 use crate::surface::{Facet, FacetKind, SurfaceInteraction, SurfaceParts, surface_on};
 
 /// Makes the surfaces that the rays hit, perturbed by their materials' maps and turned towards the eye.
 pub fn mapped_surfaces(
     frame: &Frame<'_>,
-    rays: &Rays,
-    hits: &HitLanes<PLACES>,
+    (rays, hits): (&Rays, &HitLanes<PLACES>),
     surfaces: &mut Surfaces,
+    walks: &mut Walks,
     counters: &mut Counters,
 ) {
     frame.level.run_or_plain(FindRuns {
@@ -27,6 +31,19 @@ pub fn mapped_surfaces(
     for run in 0..surfaces.runs.len() {
         let run = surfaces.runs[run];
         count(&frame.materials[run.material], &run, counters);
+        if let Some(field) = frame.materials[run.material].mapping.walks()
+            && run.kind.parts == SurfaceParts::Gradients
+        {
+            frame.level.run_or_plain(AimWalks {
+                frame,
+                rays,
+                hits,
+                run,
+                field,
+                surfaces,
+            });
+            walk(field, frame.level, &run, &mut surfaces.relief, walks);
+        }
         frame.level.run_or_plain(MapRun {
             frame,
             rays,
@@ -97,6 +114,7 @@ fn run_of(frame: &Frame<'_>, prim: u32, runs: &mut Vec<Run>, likely: usize) -> u
                 smooth: attributes.smooth,
                 parts: frame.materials[material].parts(attributes.has_uv),
             },
+            displaced: frame.displaces(attributes),
             places: Places::EMPTY,
         });
         runs.len() - 1
@@ -115,6 +133,60 @@ fn count(material: &FrameMaterial<'_>, run: &Run, counters: &mut Counters) {
     }
 }
 
+/// The texture coordinates of a run's points, and how they change along the view rays.
+struct AimWalks<'a> {
+    frame: &'a Frame<'a>,
+    rays: &'a Rays,
+    hits: &'a HitLanes<PLACES>,
+    run: Run,
+    field: &'a ReliefField<'a>,
+    surfaces: &'a mut Surfaces,
+}
+
+impl Kernel for AimWalks<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let to = &mut self.surfaces.relief;
+        to.usable = Places::EMPTY;
+        let mut facets = Facets::new(self.frame, self.run.kind);
+        for group in self.run.places.groups::<S>() {
+            let s = facets.surface(simd, (&self.run, group), self.rays, self.hits);
+            let (per_z, usable) = view_ray(self.field, &s);
+            let mask = self.run.places.mask(simd, group);
+            set(&mut to.uv[0], group, mask, s.uv.x);
+            set(&mut to.uv[1], group, mask, s.uv.y);
+            set(&mut to.per_z[0], group, mask, per_z.x);
+            set(&mut to.per_z[1], group, mask, per_z.y);
+            to.usable.add(group, mask & usable);
+        }
+    }
+}
+
+/// Replaces the texture coordinates of a run's points by those of the places that the eye sees.
+fn walk(
+    field: &ReliefField<'_>,
+    level: SimdLevel,
+    run: &Run,
+    points: &mut ReliefPoints,
+    walks: &mut Walks,
+) {
+    walks.clear();
+    let at = |columns: &[Column; 2], place: usize| [columns[0].0[place], columns[1].0[place]];
+    for place in (run.places & points.usable).iter() {
+        let (uv, per_z) = (at(&points.uv, place), at(&points.per_z, place));
+        walks.push(place, sinking_ray(field, uv, per_z));
+    }
+    walks.run(field, level);
+    for (place, ray, walk) in walks.iter() {
+        let view = (at(&points.uv, place), at(&points.per_z, place));
+        let [u, v, z, steps] = landed(field, view, ray, walk);
+        points.uv[0].0[place] = u;
+        points.uv[1].0[place] = v;
+        points.z.0[place] = z;
+        points.steps.0[place] = steps;
+    }
+}
+
 struct MapRun<'a> {
     frame: &'a Frame<'a>,
     rays: &'a Rays,
@@ -129,22 +201,48 @@ impl Kernel for MapRun<'_> {
         let material = &self.frame.materials[self.run.material];
         let searches =
             self.run.kind.parts == SurfaceParts::Gradients && material.mapping.searches();
-        let mut last = None;
+        let walked = material.mapping.walks().is_some() && searches;
+        let mut facets = Facets::new(self.frame, self.run.kind);
         for group in self.run.places.groups::<S>() {
-            let lane = self.run.places.bits::<S>(group).trailing_zeros() as usize;
             let mask = self.run.places.mask(simd, group);
-            let facet = self.facet(self.hits.prim.get(simd, group), (mask, lane), &mut last);
-            let barycentrics = (self.hits.u.get(simd, group), self.hits.v.get(simd, group));
-            let wo = -get3(simd, &self.rays.lanes.dir, group);
-            let mut s = surface_on(&facet, barycentrics, wo, self.run.kind);
-            let diffuse = perturb(material, self.run.kind.parts, &mut s, mask);
+            let mut s = facets.surface(simd, (&self.run, group), self.rays, self.hits);
+            if walked {
+                let from = &self.surfaces.relief;
+                let [u, v] = &from.uv;
+                let place = [
+                    u.get(simd, group),
+                    v.get(simd, group),
+                    from.z.get(simd, group),
+                ];
+                let [u, v, z] = place;
+                let usable = from.usable.mask(simd, group);
+                let found = found(&s, [u, v, z, from.steps.get(simd, group)], usable);
+                material.mapping.apply_found(&mut s, &found);
+            } else if self.run.kind.parts == SurfaceParts::Gradients {
+                material.mapping.apply(&mut s, mask);
+            }
+            if let Some(points) = self
+                .hits
+                .displaced
+                .as_deref()
+                .filter(|_| self.run.displaced)
+            {
+                s.p = get3(simd, &points.p, group);
+                s.n_geo = get3(simd, &points.normal, group);
+                s.n_shade = s.n_geo;
+            }
+            let diffuse = diffuse(material, self.run.kind.parts, s.uv);
             // Perturbed on the front side; an eye behind it sees the other side of the same relief.
             let from_behind = s.wo.dot(s.n_geo).lt(Wide::new(simd, 0.0));
             let n_geo = V3::select(from_behind, -s.n_geo, s.n_geo);
             let n_shade = V3::select(from_behind, -s.n_shade, s.n_shade);
             let to = &mut *self.surfaces;
             set3(&mut to.p, group, mask, s.p);
-            set(&mut to.bound, group, mask, s.n_geo.abs().dot(s.p_error));
+            let bound = match &self.hits.displaced {
+                Some(points) if self.run.displaced => points.bound.get(simd, group),
+                _ => s.n_geo.abs().dot(s.p_error),
+            };
+            set(&mut to.bound, group, mask, bound);
             set3(&mut to.n_geo, group, mask, n_geo);
             set3(&mut to.n_shade, group, mask, n_shade);
             set_rgb(&mut to.diffuse, group, mask, diffuse);
@@ -162,33 +260,65 @@ impl Kernel for MapRun<'_> {
     }
 }
 
-impl MapRun<'_> {
-    /// The triangle of each lane. On large triangles all lanes share one; it is prepared once, and kept in
-    /// `last` for the groups that follow. `lane` is one in the mask.
+/// The triangles under a run's points. On large triangles all lanes share one; it is prepared once and
+/// kept for the groups that follow.
+struct Facets<'a> {
+    frame: &'a Frame<'a>,
+    kind: FacetKind,
+    last: Option<(u32, Facet)>,
+}
+
+impl<'a> Facets<'a> {
+    #[inline(always)]
+    const fn new(frame: &'a Frame<'a>, kind: FacetKind) -> Self {
+        Self {
+            frame,
+            kind,
+            last: None,
+        }
+    }
+
+    /// The surfaces of a group before any map.
+    #[inline(always)]
+    fn surface<S: Simd>(
+        &mut self,
+        simd: S,
+        (run, group): (&Run, usize),
+        rays: &Rays,
+        hits: &HitLanes<PLACES>,
+    ) -> SurfaceInteraction<Wide<S>> {
+        let lane = run.places.bits::<S>(group).trailing_zeros() as usize;
+        let mask = run.places.mask(simd, group);
+        let facet = self.facet(hits.prim.get(simd, group), (mask, lane));
+        let barycentrics = (hits.u.get(simd, group), hits.v.get(simd, group));
+        let wo = -get3(simd, &rays.lanes.dir, group);
+        surface_on(&facet, barycentrics, wo, self.kind)
+    }
+
+    /// The triangle of each lane. `lane` is one in the mask.
     #[inline(always)]
     fn facet<S: Simd>(
-        &self,
+        &mut self,
         prims: WideBits<S>,
         (mask, lane): (WideMask<S>, usize),
-        last: &mut Option<(u32, Facet)>,
     ) -> Facet<Wide<S>> {
-        let (mesh, kind) = (self.frame.mesh, self.run.kind);
+        let (mesh, kind) = (self.frame.mesh, self.kind);
         let prim = prims.0.as_slice()[lane];
         if !(prims.equals(prim) | !mask).all() {
             // Lanes outside the mask hold no triangle: they take part with any.
             let prims = WideBits::select(mask, prims, prims.splat(prim));
             return Facet::fetch(mesh, prims, kind);
         }
-        let facet = match last {
-            Some((cached, facet)) if *cached == prim => *facet,
+        let facet = match self.last {
+            Some((cached, facet)) if cached == prim => facet,
             _ => Facet::fetch(mesh, prim, kind),
         };
-        *last = Some((prim, facet));
+        self.last = Some((prim, facet));
         Facet::splat(prims.to_real(), &facet)
     }
 }
 
-/// Applies the material's maps; returns the diffuse colour.
+/// Applies the material's maps to one point or to one in each lane; returns the diffuse colour.
 #[inline(always)]
 pub fn perturb<F: crate::math::Real>(
     material: &FrameMaterial<'_>,
@@ -199,9 +329,19 @@ pub fn perturb<F: crate::math::Real>(
     if parts == SurfaceParts::Gradients {
         material.mapping.apply(s, wanted);
     }
-    let kd = LinearRgb::splat(s.uv.x, material.kd);
+    diffuse(material, parts, s.uv)
+}
+
+/// The diffuse colour at a texture coordinate.
+#[inline(always)]
+fn diffuse<F: crate::math::Real>(
+    material: &FrameMaterial<'_>,
+    parts: SurfaceParts,
+    uv: V2<F>,
+) -> LinearRgb<F> {
+    let kd = LinearRgb::splat(uv.x, material.kd);
     match &material.albedo {
-        Some(albedo) if parts >= SurfaceParts::Uv => kd * albedo.color(s.uv),
+        Some(albedo) if parts >= SurfaceParts::Uv => kd * albedo.color(uv),
         _ => kd,
     }
 }

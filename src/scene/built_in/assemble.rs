@@ -38,6 +38,7 @@ pub fn assemble(
         bounds,
     };
     Scene {
+        displaced: crate::surface::displaced::DisplacementCell::default(),
         name: name.to_owned(),
         source,
         bvh: Bvh::build(&internal),

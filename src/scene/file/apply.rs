@@ -57,6 +57,7 @@ fn apply_camera(keys: &CameraKeys, camera: &mut Camera) {
 
 fn apply_shading(keys: &ShadingKeys, shading: &mut ShadingSettings) {
     put(&mut shading.model, keys.model);
+    put(&mut shading.bent_normals, keys.bent_normals);
     put(&mut shading.shadows, keys.shadows);
     put(&mut shading.max_bounces, keys.max_bounces);
     put(&mut shading.background, keys.background);
@@ -71,6 +72,7 @@ fn apply_mapping(keys: &MappingKeys, mapping: &mut MappingSettings) {
     put(&mut mapping.use_height, keys.use_height);
     put(&mut mapping.use_normal, keys.use_normal);
     put(&mut mapping.use_parallax, keys.use_parallax);
+    put(&mut mapping.weld_seams, keys.weld_seams);
     let search = &mut mapping.search;
     put(&mut search.layers, keys.layers);
     put(&mut search.min_layers, keys.min_layers);

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::math::LinearRgb;
-use crate::scene::{Background, ShadingModel};
+use crate::scene::{Background, BentNormals, ShadingModel};
 use crate::shading::Light;
 use crate::surface::mapping::{Derivative, Lookup, Method};
 use crate::texture::{Channel, MapRole, Wrap};
@@ -74,6 +74,8 @@ pub(super) struct CameraKeys {
 pub(super) struct ShadingKeys {
     /// `model`.
     pub model: Option<ShadingModel>,
+    /// `bent_normals`.
+    pub bent_normals: Option<BentNormals>,
     /// `shadows`.
     pub shadows: Option<bool>,
     /// `max_bounces`.
@@ -101,6 +103,8 @@ pub(super) struct MappingKeys {
     pub use_normal: Option<bool>,
     /// `use_parallax`.
     pub use_parallax: Option<bool>,
+    /// `weld_seams`.
+    pub weld_seams: Option<bool>,
     /// `layers`.
     pub layers: Option<u32>,
     /// `min_layers`.

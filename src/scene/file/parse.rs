@@ -9,7 +9,7 @@ use super::fault::{Fault, Read};
 use super::parse_light::lights;
 use super::parse_material::materials;
 use super::section::{Item, Limits, Section};
-use crate::scene::{Background, ShadingModel};
+use crate::scene::{Background, BentNormals, ShadingModel};
 use crate::surface::mapping::{Derivative, Lookup, Method, SearchSettings};
 
 /// Most columns or rows of a picture.
@@ -150,6 +150,9 @@ fn shading(root: &mut Section<'_>) -> Read<ShadingKeys> {
         model: table.read("model", |x| {
             x.choice(&ShadingModel::ALL, ShadingModel::name)
         })?,
+        bent_normals: table.read("bent_normals", |x| {
+            x.choice(&BentNormals::ALL, BentNormals::name)
+        })?,
         shadows: table.read("shadows", Item::boolean)?,
         max_bounces: table.read("max_bounces", |x| x.integer(0, MAX_BOUNCES))?,
         background: table.read("background", background)?,
@@ -187,6 +190,7 @@ fn mapping(root: &mut Section<'_>) -> Read<MappingKeys> {
         use_height: table.read("use_height", Item::boolean)?,
         use_normal: table.read("use_normal", Item::boolean)?,
         use_parallax: table.read("use_parallax", Item::boolean)?,
+        weld_seams: table.read("weld_seams", Item::boolean)?,
         layers: table.read("layers", |x| x.integer(1, SearchSettings::MAX_LAYERS))?,
         min_layers: table.read("min_layers", |x| x.integer(1, SearchSettings::MAX_LAYERS))?,
         bisections: table.read("bisections", |x| {

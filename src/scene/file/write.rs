@@ -169,6 +169,7 @@ fn shading(text: &mut Text, view: &SceneView<'_>) -> Result<(), SaveError> {
     let shading = &view.settings.shading;
     text.table("shading");
     text.string("model", shading.model.name());
+    text.string("bent_normals", shading.bent_normals.name());
     text.raw("shadows", shading.shadows);
     text.raw("max_bounces", shading.max_bounces);
     let Background { top, bottom } = shading.background;
@@ -197,6 +198,7 @@ fn mapping(text: &mut Text, view: &SceneView<'_>) -> Result<(), SaveError> {
     text.raw("use_height", mapping.use_height);
     text.raw("use_normal", mapping.use_normal);
     text.raw("use_parallax", mapping.use_parallax);
+    text.raw("weld_seams", mapping.weld_seams);
     let search = &mapping.search;
     text.raw("layers", search.layers);
     text.raw("min_layers", search.min_layers);

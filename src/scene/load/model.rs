@@ -54,6 +54,7 @@ pub fn load_model(path: &Path, options: &LoadOptions) -> Result<LoadedScene, Loa
     let settings = staged(&mesh, bounds, set.materials);
     let bvh = Bvh::build_watched(&mesh, &|share| monitor.reached(Stage::Tree, share))?;
     let scene = Scene {
+        displaced: crate::surface::displaced::DisplacementCell::default(),
         name: path.file_name().map_or_else(
             || path.display().to_string(),
             |name| name.to_string_lossy().into_owned(),

@@ -88,7 +88,8 @@ impl<'a> MaterialMapping<'a> {
         let normal = normal.map_or(Tilt::Keep, Tilt::Normal);
         let tilted = |tilt| Self { tilt, ..Self::NONE };
         match settings.method {
-            Method::None => Self::NONE,
+            // Displacement is geometry: what is left to do here is nothing.
+            Method::None | Method::Displacement => Self::NONE,
             Method::Bump => tilted(bump),
             Method::Slope => {
                 let central = || tilting_height.map_or(Tilt::Keep, Tilt::Central);
@@ -132,6 +133,15 @@ impl<'a> MaterialMapping<'a> {
         matches!(self.shift, Shift::Search(_))
     }
 
+    /// The relief that is walked for every point: such points can be walked for together.
+    #[must_use]
+    pub const fn walks(&self) -> Option<&ReliefField<'a>> {
+        match &self.shift {
+            Shift::Search(Search::Exact(field)) => Some(field),
+            _ => None,
+        }
+    }
+
     /// Whether any map is read; if not, no texture coordinate is needed for mapping.
     #[must_use]
     pub const fn is_active(&self) -> bool {
@@ -173,6 +183,18 @@ impl<'a> MaterialMapping<'a> {
                 move_to(s, &found);
             }
         }
+        self.tilt(s);
+    }
+
+    /// [`Self::apply`] where the search is over already.
+    #[inline(always)]
+    pub fn apply_found<F: Real>(&self, s: &mut SurfaceInteraction<F>, found: &Found<F>) {
+        move_to(s, found);
+        self.tilt(s);
+    }
+
+    #[inline(always)]
+    fn tilt<F: Real>(&self, s: &mut SurfaceInteraction<F>) {
         match &self.tilt {
             Tilt::Keep => {}
             Tilt::Analytic(h) => s.n_shade = bumped(s, h.analytic_slope(s.uv)),
@@ -195,7 +217,9 @@ impl<'a> Shift<'a> {
         let layers = Layers::fixed(search.layers);
         let bisection = Refinement::Bisection(search.bisections);
         Some(Self::Search(match method {
-            Method::None | Method::Bump | Method::Slope | Method::Normal => return None,
+            Method::None | Method::Bump | Method::Slope | Method::Normal | Method::Displacement => {
+                return None;
+            }
             Method::Parallax => return Some(Self::Parallax(height)),
             Method::ParallaxLimited => return Some(Self::Limited(height)),
             Method::Iterative => Search::Iterate(height, search.iterations),

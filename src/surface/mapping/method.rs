@@ -31,6 +31,8 @@ pub enum Method {
     RelaxedCone,
     /// Cell by cell through a pyramid of extremes: no step too far (Tevs 2008).
     Exact,
+    /// The surface itself moved: silhouettes, shadows and all.
+    Displacement,
 }
 
 /// What a method gets wrong, after Szirmay-Kalos & Umenhoffer 2008.
@@ -48,6 +50,8 @@ pub enum ErrorClass {
     Conservative,
     /// Right to rounding for the bilinear relief over a flat chart.
     Exact,
+    /// The displaced surface itself.
+    Truth,
 }
 
 impl ErrorClass {
@@ -61,6 +65,7 @@ impl ErrorClass {
             Self::Sampled => "unsafe: may miss relief thinner than a step; no silhouette",
             Self::Conservative => "convergent: seldom misses, may stop short; no silhouette",
             Self::Exact => "exact for the relief over a flat chart; no silhouette",
+            Self::Truth => "the truth: the displaced surface with its silhouettes and shadows",
         }
     }
 }
@@ -84,7 +89,7 @@ pub struct MethodInfo {
 
 impl Method {
     /// Every method in the order of the keys.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::None,
         Self::Bump,
         Self::Slope,
@@ -97,6 +102,7 @@ impl Method {
         Self::Relief,
         Self::RelaxedCone,
         Self::Exact,
+        Self::Displacement,
     ];
 
     /// What the program says about it.
@@ -199,6 +205,14 @@ impl Method {
                 error_class: ErrorClass::Exact,
                 source: "maximum mipmaps, Tevs et al. 2008",
             },
+            Self::Displacement => MethodInfo {
+                name: "displacement",
+                label: "Displacement",
+                key: '\\',
+                summary: "Moves the surface itself along its normal by the height map: traced as geometry, with silhouettes and shadows.",
+                error_class: ErrorClass::Truth,
+                source: "Cook 1984; traced after Tevs et al. 2008 where flat, Thonat et al. 2021 where curved",
+            },
         }
     }
 
@@ -257,7 +271,7 @@ impl Method {
                 normal: false,
                 slope: false,
             },
-            Self::Bump => MethodReads {
+            Self::Bump | Self::Displacement => MethodReads {
                 height: true,
                 normal: false,
                 slope: false,

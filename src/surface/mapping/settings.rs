@@ -74,6 +74,9 @@ pub struct MappingSettings {
     pub use_normal: bool,
     /// Whether parallax methods move texture coordinates.
     pub use_parallax: bool,
+    /// Whether true displacement takes the mean height along edges at which texture coordinates jump, so that
+    /// no crack opens there.
+    pub weld_seams: bool,
     /// What searches take.
     pub search: SearchSettings,
 }
@@ -119,9 +122,11 @@ impl MappingSettings {
     /// itself.
     #[must_use]
     pub const fn needs_pyramid(&self) -> bool {
-        self.use_parallax
-            && (matches!(self.method, Method::Exact)
-                || self.method.searches() && self.search.self_shadow)
+        let is_displaced = self.use_height && matches!(self.method, Method::Displacement);
+        is_displaced
+            || self.use_parallax
+                && (matches!(self.method, Method::Exact)
+                    || self.method.searches() && self.search.self_shadow)
     }
 
     /// Whether cones over height maps are asked for.
@@ -142,6 +147,7 @@ impl Default for MappingSettings {
             use_height: true,
             use_normal: true,
             use_parallax: true,
+            weld_seams: true,
             search: SearchSettings::default(),
         }
     }

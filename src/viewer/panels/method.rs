@@ -31,6 +31,10 @@ pub(super) fn method_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
     );
     switches_ui(ui, mapping);
     search_ui(ui, method, mapping, &original.search);
+    if method == Method::Displacement {
+        displacement_ui(ui, panel);
+        return;
+    }
     ui.add_enabled_ui(method.shifts_uv(), |ui| {
         let caption = Caption::named("Look-up", "Lookup");
         choice_ui(ui, caption, &mut mapping.lookup, &Lookup::ALL, Lookup::name);
@@ -138,6 +142,33 @@ fn search_ui(
                 "Every light is followed through the relief, exactly, by a pyramid of its extremes",
             );
     }
+}
+
+/// What true displacement takes, and what was found out about the mesh.
+fn displacement_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
+    let weld_seams = &mut panel.doc.settings.mapping.weld_seams;
+    ui.checkbox(weld_seams, "Weld seams").on_hover_text(
+        "Where texture coordinates jump, both sides take the mean height, so that no crack opens",
+    );
+    let Some(displacement) = panel.doc.scene.displaced.last() else {
+        return;
+    };
+    let [flat, fine] = displacement.kinds();
+    let seams = displacement.seams();
+    let gap = panel
+        .doc
+        .scene
+        .normalization
+        .world_length(seams.largest_gap);
+    let mut said =
+        format!("{flat} triangles walked as flat reliefs, {fine} cut up where rays come");
+    if seams.edges > 0 {
+        said += &format!(
+            "; {} seam edges, heights up to {gap:.2e} apart",
+            seams.edges
+        );
+    }
+    ui.add(egui::Label::new(RichText::new(said).color(theme::WEAK)).wrap());
 }
 
 /// One amplitude for all, or each material its own default.

@@ -2,6 +2,7 @@
 //! app (files, dialogs) goes into a list of actions.
 
 mod compare;
+mod cost;
 mod display;
 mod lights;
 mod map_slot;
@@ -45,6 +46,8 @@ pub struct UiState {
     pub paused: bool,
     /// Worker threads asked for, 0 for one per core.
     pub threads: usize,
+    /// What is known about the picture on show.
+    pub stats: crate::viewer::worker::FrameStats,
     /// The pixel's story on show.
     pub story: Option<crate::viewer::story::Story>,
 }
@@ -163,7 +166,7 @@ fn is_on(panel: &PanelContext<'_>, command: Command) -> bool {
 
 fn sections_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
     type Section = (&'static str, bool, fn(&mut Ui, &mut PanelContext<'_>));
-    const SECTIONS: [Section; 8] = [
+    const SECTIONS: [Section; 9] = [
         ("Method", true, method::method_ui),
         ("Compare", false, compare::compare_ui),
         ("Scene", true, scene::scene_ui),
@@ -172,6 +175,7 @@ fn sections_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
         ("Shading", false, shading::shading_ui),
         ("Render", false, render::render_ui),
         ("Display", false, display::display_ui),
+        ("Cost", false, cost::cost_ui),
     ];
     for (title, open, section_ui) in SECTIONS {
         CollapsingHeader::new(RichText::new(title).strong())

@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use super::PanelContext;
-use crate::scene::ShadingModel;
+use crate::scene::{BentNormals, ShadingModel};
 use crate::viewer::widgets::{Caption, Number, choice_ui, color_ui, number_ui};
 
 pub(super) fn shading_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
@@ -16,6 +16,14 @@ pub(super) fn shading_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
         &mut shading.model,
         &ShadingModel::ALL,
         ShadingModel::name,
+    );
+    let caption = Caption::named("Bent", "Bent normals");
+    choice_ui(
+        ui,
+        caption,
+        &mut shading.bent_normals,
+        &BentNormals::ALL,
+        BentNormals::name,
     );
     ui.checkbox(&mut shading.shadows, "Shadows");
     number_ui(

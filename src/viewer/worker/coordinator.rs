@@ -330,6 +330,7 @@ impl Coordinator {
             samples_wanted: settings.samples.max(1),
             converged,
             pass_millis: job.pass_millis,
+            stage_millis: renderer.stage_millis,
             pass_rays: job.pass_rays,
             counters: renderer.counters(),
             reshaded: renderer.first.reuses_hits(),

@@ -21,6 +21,7 @@ use std::time::{Duration, Instant};
 use egui::{Color32, ColorImage};
 
 use crate::measure::error_map::{ErrorMetric, ErrorSummary};
+use crate::measure::stage_clock::StageClock;
 use crate::render::{Counters, PassEnd, Picture, Progressive, Shown, Snapshot};
 use crate::surface::mapping::Method;
 
@@ -32,6 +33,10 @@ pub trait PassRenderer: Send {
     fn preview(&mut self, stride: u32, stop: &(dyn Fn() -> bool + Sync)) -> PassEnd;
     /// See [`Progressive::pass`].
     fn pass(&mut self, stop: &(dyn Fn() -> bool + Sync)) -> PassEnd;
+    /// A pass, and the thread time in each stage of it, ms; what it does not measure is 0.
+    fn timed_pass(&mut self, stop: &(dyn Fn() -> bool + Sync)) -> (PassEnd, [f64; 4]) {
+        (self.pass(stop), [0.0; 4])
+    }
     /// See [`Progressive::samples`].
     fn samples(&self) -> u32;
     /// See [`Progressive::picture`].
@@ -59,6 +64,10 @@ impl PassRenderer for Progressive {
     }
     fn pass(&mut self, stop: &(dyn Fn() -> bool + Sync)) -> PassEnd {
         Self::pass(self, stop)
+    }
+    fn timed_pass(&mut self, stop: &(dyn Fn() -> bool + Sync)) -> (PassEnd, [f64; 4]) {
+        let (end, clocks) = self.watched_pass::<StageClock>(stop);
+        (end, StageClock::sum_millis(&clocks))
     }
     fn samples(&self) -> u32 {
         Self::samples(self)
@@ -185,6 +194,9 @@ pub struct FrameStats {
     pub converged: bool,
     /// Duration of the last pass.
     pub pass_millis: f32,
+    /// Thread time in the stages of the last full pass of the first picture, ms: tracing, perturbing, shading,
+    /// putting into the film.
+    pub stage_millis: [f64; 4],
     /// Rays of all kinds in the last pass.
     pub pass_rays: u64,
     /// Exact counts of the whole picture so far.

@@ -16,6 +16,10 @@ pub(super) struct Pair {
     /// Of the picture itself.
     pub first: Box<dyn PassRenderer>,
     second: Option<Box<dyn PassRenderer>>,
+    /// Thread time by stage of the first's pass under way, ms.
+    spent: [f64; 4],
+    /// The same of its last whole pass.
+    pub stage_millis: [f64; 4],
 }
 
 impl Pair {
@@ -24,6 +28,8 @@ impl Pair {
             threads,
             first: factory(threads)?,
             second: None,
+            spent: [0.0; 4],
+            stage_millis: [0.0; 4],
         })
     }
 
@@ -50,6 +56,7 @@ impl Pair {
             }
         }
         self.first.start(snapshot);
+        self.spent = [0.0; 4];
         Ok(())
     }
 
@@ -60,21 +67,32 @@ impl Pair {
 
     /// A pass or preview of the first, then of the second. Where that was stopped between them, it goes on there.
     pub fn advance(&mut self, stride: u32, stop: &(dyn Fn() -> bool + Sync)) -> PassEnd {
-        let one = |renderer: &mut dyn PassRenderer| {
-            if stride == 1 {
-                renderer.pass(stop)
-            } else {
-                renderer.preview(stride, stop)
-            }
-        };
-        let Some(second) = &mut self.second else {
-            return one(&mut *self.first);
-        };
-        let is_ahead = stride == 1 && self.first.samples() > second.samples();
-        if !is_ahead && one(&mut *self.first) == PassEnd::Stopped {
+        let is_ahead =
+            |second: &dyn PassRenderer| stride == 1 && self.first.samples() > second.samples();
+        if !self.second.as_deref().is_some_and(is_ahead)
+            && self.advance_first(stride, stop) == PassEnd::Stopped
+        {
             return PassEnd::Stopped;
         }
-        one(&mut **second)
+        match &mut self.second {
+            None => PassEnd::Complete,
+            Some(second) if stride == 1 => second.pass(stop),
+            Some(second) => second.preview(stride, stop),
+        }
+    }
+
+    fn advance_first(&mut self, stride: u32, stop: &(dyn Fn() -> bool + Sync)) -> PassEnd {
+        if stride > 1 {
+            return self.first.preview(stride, stop);
+        }
+        let (end, spent) = self.first.timed_pass(stop);
+        // A pass that was stopped goes on later.
+        let sums = self.spent.iter_mut().zip(spent);
+        sums.for_each(|(sum, spent)| *sum += spent);
+        if end == PassEnd::Complete {
+            self.stage_millis = std::mem::take(&mut self.spent);
+        }
+        end
     }
 
     /// Samples that every pixel of both has.

@@ -3,6 +3,7 @@
 //! Tolerances are absolute where the compared numbers are of order one. `f32` rounds to 6·10⁻⁸; a few
 //! dozen operations with directions of unit length stay below 2·10⁻⁶.
 
+mod displaced;
 mod mapping;
 mod picture;
 mod walk;

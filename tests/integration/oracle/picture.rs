@@ -77,6 +77,7 @@ fn random_settings(random: &mut Random, corners: [DVec3; 3]) -> RenderSettings {
 fn rendered(corners: [DVec3; 3], settings: &RenderSettings) -> Picture {
     let mesh = one_triangle(corners, [DVec2::ZERO; 3]);
     let scene = Scene {
+        displaced: Default::default(),
         name: "one triangle".to_owned(),
         source: SceneSource::BuiltIn("one triangle".to_owned()),
         bvh: Bvh::build(&mesh),

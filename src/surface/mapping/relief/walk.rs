@@ -169,6 +169,62 @@ impl<'a> ReliefField<'a> {
         ]
     }
 
+    /// Change of the displacement per texel to the right and downwards at a place in texels.
+    #[must_use]
+    pub fn slope(&self, place: [f64; 2]) -> [f64; 2] {
+        if !place.iter().all(|c| c.abs() < FARTHEST) {
+            return [0.0; 2];
+        }
+        match self.stored {
+            StoredHeights::U16(texels, nodes) => self.with(texels, nodes).slope(place),
+            StoredHeights::F32(texels, nodes) => self.with(texels, nodes).slope(place),
+        }
+    }
+
+    /// Smallest and largest displacement over a triangle of places in texels, or somewhat more: never less,
+    /// also if the places are off by a hundredth of a texel.
+    #[must_use]
+    pub fn range_near(&self, places: [[f64; 2]; 3]) -> [f64; 2] {
+        let mut nodes = [[0_u32; 3]; 2];
+        let mut cells = [[0_u32; 2]; 2];
+        let mut widest = 1;
+        for k in 0..2 {
+            let [a, b, c] = places.map(|place| place[k]);
+            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+            let margin = 0.01 + low.abs().max(high.abs()) * 1e-6;
+            let n = self.size[k];
+            let known = low.abs().max(high.abs()) < FARTHEST;
+            if !known || self.height.addressing.wrap != Wrap::Repeat {
+                return self.range;
+            }
+            let (first, last) = (
+                (low - margin).floor() as i64,
+                (high + margin).floor() as i64,
+            );
+            if last - first + 1 >= i64::from(n) {
+                return self.range;
+            }
+            widest = widest.max((last - first + 1) as u32);
+            cells[k] = [first, last].map(|cell| cell.rem_euclid(i64::from(n)) as u32);
+        }
+        let level = widest.next_power_of_two().ilog2();
+        for k in 0..2 {
+            let [first, last] = cells[k];
+            let end = self.size[k] - 1;
+            // As many cells as a node has lie in at most two nodes; across the border of the picture, in
+            // at most three.
+            nodes[k] = if first <= last {
+                [first, last, last]
+            } else {
+                [first, end, last]
+            };
+        }
+        match self.stored {
+            StoredHeights::U16(texels, all) => self.with(texels, all).extremes(level, nodes),
+            StoredHeights::F32(texels, all) => self.with(texels, all).extremes(level, nodes),
+        }
+    }
+
     /// Displacement at a place in texels; 0 farther away than anything can be.
     #[must_use]
     pub fn displacement(&self, place: [f64; 2]) -> f64 {
@@ -249,6 +305,44 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
         let [a, b, c, d] = self.corners(&x, &y);
         let (fx, fy) = (x.fraction(0.0), y.fraction(0.0));
         a + (b - a) * fx + (c - a) * fy + (a - b - c + d) * fx * fy
+    }
+
+    fn slope(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let (x, y) = (
+            Axis::new(self.size[0], x, 0.0),
+            Axis::new(self.size[1], y, 0.0),
+        );
+        let [a, b, c, d] = self.corners(&x, &y);
+        let twist = a - b - c + d;
+        [
+            b - a + twist * y.fraction(0.0),
+            c - a + twist * x.fraction(0.0),
+        ]
+    }
+
+    /// Smallest and largest displacement over the nodes that hold some cells of the picture.
+    fn extremes(&self, level: u32, [columns, rows]: [[u32; 3]; 2]) -> [f64; 2] {
+        let Level {
+            start,
+            columns: width,
+            ..
+        } = self.levels[level as usize];
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (at, j) in rows.into_iter().enumerate() {
+            if at > 0 && j >> level == rows[at - 1] >> level {
+                continue;
+            }
+            for (at, i) in columns.into_iter().enumerate() {
+                if at > 0 && i >> level == columns[at - 1] >> level {
+                    continue;
+                }
+                let node = start + (j >> level) as usize * width as usize + (i >> level) as usize;
+                let [a, b] = self.nodes[node].map(|stored| self.displaced(stored));
+                low = low.min(a.min(b));
+                high = high.max(a.max(b));
+            }
+        }
+        [low, high]
     }
 
     pub(super) fn walk(&self, ray: &ReliefRay) -> Walk {

@@ -343,7 +343,7 @@ impl<S: Simd> Lanes<S> {
         let leave = exit.min(self.end);
         let [z, z_rate] = self.line;
         let lowest = z + z_rate * z_rate.simd_gt(0.0).select(self.tau, leave);
-        let high = self.high(simd, relief, (span_x, span_y), busy);
+        let high = self.high(simd, relief, (span_x, span_y));
 
         let enters = lowest.simd_le(high) & !capped;
         let coarse = self.size.simd_gt(1.0);
@@ -392,25 +392,23 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
-    /// The largest displacement over the squares of the busy lanes.
+    /// The largest displacement over the squares of the lanes.
     #[inline(always)]
     fn high<T: Copy + Into<f64>>(
         &self,
         simd: S,
         relief: &Typed<'_, T>,
         (span_x, span_y): (LaneSpan<S>, LaneSpan<S>),
-        busy: u64,
     ) -> S::f64s {
         let (columns, rows) = (store::<S>(span_x.square), store::<S>(span_y.square));
         let (sizes, signs) = (store::<S>(self.size), store::<S>(self.sign));
         let mut stored = [0.0; MAX_LANES];
+        // Idle lanes, too: their last square is as good as any, and a branch for each lane costs more.
         for lane in 0..S::f64s::LEN {
-            if busy >> lane & 1 != 0 {
-                // The exponent of a power of two.
-                let level = (sizes[lane].to_bits() >> 52) as u32 - 1023;
-                let node = [columns[lane] as u32, rows[lane] as u32];
-                stored[lane] = relief.farthest(level, node, signs[lane]).into();
-            }
+            // The exponent of a power of two.
+            let level = (sizes[lane].to_bits() >> 52) as u32 - 1023;
+            let node = [columns[lane] as u32, rows[lane] as u32];
+            stored[lane] = relief.farthest(level, node, signs[lane]).into();
         }
         self.displaced(simd, relief, &stored)
     }
@@ -433,18 +431,18 @@ impl<S: Simd> Lanes<S> {
         let (columns, rows) = (store::<S>(self.x.local), store::<S>(self.y.local));
         let mut corners = [[0.0; MAX_LANES]; 4];
         let [width, height] = relief.size;
-        for lane in 0..S::f64s::LEN {
-            if tests >> lane & 1 != 0 {
-                let (i, j) = (columns[lane] as u32, rows[lane] as u32);
-                let after = |i: u32, n| if i + 1 == n { 0 } else { i + 1 };
-                let (i1, j1) = (after(i, width), after(j, height));
-                let texel =
-                    |i: u32, j: u32| relief.texels[j as usize * width as usize + i as usize];
-                corners[0][lane] = texel(i, j).into();
-                corners[1][lane] = texel(i1, j).into();
-                corners[2][lane] = texel(i, j1).into();
-                corners[3][lane] = texel(i1, j1).into();
-            }
+        let mut tests = tests;
+        while tests != 0 {
+            let lane = tests.trailing_zeros() as usize % MAX_LANES;
+            tests &= tests - 1;
+            let (i, j) = (columns[lane] as u32, rows[lane] as u32);
+            let after = |i: u32, n| if i + 1 == n { 0 } else { i + 1 };
+            let (i1, j1) = (after(i, width), after(j, height));
+            let texel = |i: u32, j: u32| relief.texels[j as usize * width as usize + i as usize];
+            corners[0][lane] = texel(i, j).into();
+            corners[1][lane] = texel(i1, j).into();
+            corners[2][lane] = texel(i, j1).into();
+            corners[3][lane] = texel(i1, j1).into();
         }
         let h00 = self.displaced(simd, relief, &corners[0]);
         let h10 = self.displaced(simd, relief, &corners[1]);

@@ -1,0 +1,135 @@
+//! Which displaced triangles are flat reliefs, and how fine the others are cut up.
+
+use glam::{DVec3, Vec3};
+
+use super::Reliefs;
+use super::seams::Seams;
+use crate::geometry::TriangleMesh;
+
+/// How a displaced triangle is traced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// Its displacement normal is constant: a height field over a flat chart.
+    Flat,
+    /// It is cut into `2^segments_log2` segments along every edge.
+    Fine {
+        /// At least 2.
+        segments_log2: u8,
+    },
+}
+
+/// Welded normals that differ less than this angle (radians) from their mean are taken as equal: 10⁻⁵ of
+/// the displacement at the most.
+const SAME_DIRECTION: f64 = 1e-5;
+
+/// A triangle this nearly along its displacement normal (sine) is no height field.
+const MIN_SLOPE: f64 = 1e-3;
+
+/// Finest cut: 2¹⁵ segments, 16,384 texels along an edge.
+const MAX_SEGMENTS_LOG2: u8 = 15;
+
+/// What each displaced triangle is. Triangles that hang together by a corner are all flat, or all cut up
+/// with as many segments along every edge, so that no crack opens between them. Flat parts get their mean
+/// normal.
+pub fn shapes(
+    mesh: &TriangleMesh,
+    reliefs: &Reliefs<'_, '_>,
+    prims: &[u32],
+    (places, seams): (&[u32], &Seams),
+    normals: &mut [Vec3],
+) -> Vec<Shape> {
+    let parts = parts(mesh, prims, places);
+    let count = parts.iter().map(|part| part + 1).max().unwrap_or(0) as usize;
+    let mut sums = vec![DVec3::ZERO; count];
+    for (&prim, &part) in prims.iter().zip(&parts) {
+        for vertex in mesh.indices[prim as usize] {
+            sums[part as usize] += normals[vertex as usize].as_dvec3();
+        }
+    }
+    let means: Vec<DVec3> = sums.into_iter().map(DVec3::normalize_or_zero).collect();
+    let mut is_flat = vec![true; count];
+    let mut texels = vec![0.0_f64; count];
+    for (&prim, &part) in prims.iter().zip(&parts) {
+        let part = part as usize;
+        let mean = means[part];
+        let vertices = mesh.indices[prim as usize];
+        let differs = |vertex: u32| {
+            let normal = normals[vertex as usize].as_dvec3();
+            !((normal - mean).length() < SAME_DIRECTION)
+        };
+        let p = mesh.corners(prim).map(|p| p.as_dvec3());
+        let area = (p[1] - p[0]).cross(p[2] - p[0]);
+        let upright = !(area.dot(mean).abs() > MIN_SLOPE * area.length());
+        is_flat[part] &= !upright && !vertices.into_iter().any(differs) && !seams.touches(prim);
+        texels[part] = texels[part].max(longest_edge(mesh, reliefs, prim));
+    }
+    for (&prim, &part) in prims.iter().zip(&parts) {
+        if is_flat[part as usize] {
+            for vertex in mesh.indices[prim as usize] {
+                normals[vertex as usize] = means[part as usize].as_vec3();
+            }
+        }
+    }
+    let shape = |&part: &u32| {
+        if is_flat[part as usize] {
+            Shape::Flat
+        } else {
+            Shape::Fine {
+                segments_log2: segments_log2(texels[part as usize]),
+            }
+        }
+    };
+    parts.iter().map(shape).collect()
+}
+
+/// At least two segments for each texel along an edge.
+fn segments_log2(texels: f64) -> u8 {
+    let segments = (2.0 * texels)
+        .ceil()
+        .clamp(4.0, f64::from(1 << MAX_SEGMENTS_LOG2));
+    (segments as u32).next_power_of_two().ilog2() as u8
+}
+
+/// Length of a triangle's longest edge in texels.
+fn longest_edge(mesh: &TriangleMesh, reliefs: &Reliefs<'_, '_>, prim: u32) -> f64 {
+    let Some(field) = reliefs.on(mesh, prim) else {
+        return 0.0;
+    };
+    let corners = mesh.indices[prim as usize];
+    let at = corners.map(|i| field.texels_from_uv(mesh.uvs[i as usize].to_array().map(f64::from)));
+    let length = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+    let longest = length(at[0], at[1])
+        .max(length(at[1], at[2]))
+        .max(length(at[2], at[0]));
+    if longest.is_finite() { longest } else { 0.0 }
+}
+
+/// Numbers of the parts that the triangles belong to: those with a corner in the same place hang together.
+fn parts(mesh: &TriangleMesh, prims: &[u32], places: &[u32]) -> Vec<u32> {
+    let count = places.iter().map(|place| place + 1).max().unwrap_or(0);
+    let mut parents: Vec<u32> = (0..count).collect();
+    for &prim in prims {
+        let [a, b, c] = mesh.indices[prim as usize].map(|i| places[i as usize]);
+        for other in [b, c] {
+            let (a, other) = (root(&mut parents, a), root(&mut parents, other));
+            // The lower place stays the root, so that numbers do not depend on the order.
+            parents[a.max(other) as usize] = a.min(other);
+        }
+    }
+    let mut numbers = std::collections::HashMap::new();
+    let mut number = |prim: &u32| {
+        let place = places[mesh.indices[*prim as usize][0] as usize];
+        let next = numbers.len() as u32;
+        *numbers.entry(root(&mut parents, place)).or_insert(next)
+    };
+    prims.iter().map(&mut number).collect()
+}
+
+fn root(parents: &mut [u32], mut place: u32) -> u32 {
+    while parents[place as usize] != place {
+        // Halving the path keeps it short.
+        parents[place as usize] = parents[parents[place as usize] as usize];
+        place = parents[place as usize];
+    }
+    place
+}

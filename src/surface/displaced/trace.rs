@@ -1,0 +1,253 @@
+//! What rays meet on displaced triangles.
+
+use glam::Vec3;
+
+use super::charts::Shape;
+use super::fine::{Best, FineCounters, FineRay, Patch};
+use super::flat::FlatPrism;
+use super::ranges::RangeCache;
+use super::{Displacement, Reliefs};
+use crate::geometry::{Ray, TriangleMesh};
+use crate::math::simd::{Kernel, Simd, SimdLevel};
+use crate::surface::mapping::relief::{ReliefRay, Walk};
+
+/// A point of a displaced surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceHit {
+    /// Distance along the ray, internal units.
+    pub t: f32,
+    /// Triangle of the mesh under it.
+    pub prim: u32,
+    /// Weights of the triangle's second and third corner.
+    pub weights: [f32; 2],
+    /// The point.
+    pub p: Vec3,
+    /// How far rounding may have taken the point off the surface, along the normal.
+    pub bound: f32,
+    /// Unit normal of the micro-triangle or of the bilinear patch, on the front side of the mesh.
+    pub normal: Vec3,
+}
+
+/// What is asked for a ray.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Search {
+    /// The nearest point.
+    Closest,
+    /// Any point at all.
+    Any,
+}
+
+/// A ray, where it ends, and what it has met.
+#[derive(Debug, Clone, Copy)]
+struct Asked {
+    ray: Ray,
+    best: Best,
+    /// Triangle of the micro-triangle that was met, with its segments.
+    fine: Option<(u32, u8)>,
+    /// Triangle of the flat relief that was met, and the distance in doubles.
+    flat: Option<(u32, f64)>,
+}
+
+/// A walk over the flat relief of a triangle, for one of the rays.
+#[derive(Debug, Clone, Copy)]
+struct Job {
+    asked: usize,
+    prim: u32,
+    material: u16,
+    /// Distance along the ray at which the walk begins.
+    from: f64,
+    ray: ReliefRay,
+}
+
+/// Traces rays against a displaced mesh. Keeps its lists, so that the steady state allocates nothing.
+#[derive(Debug, Default)]
+pub struct Tracer {
+    asked: Vec<Asked>,
+    jobs: Vec<Job>,
+    rays: Vec<ReliefRay>,
+    walks: Vec<Walk>,
+    ranges: RangeCache,
+    /// Steps of walks, and parts cut up or made, since the last [`Self::take_steps`].
+    steps: u64,
+}
+
+/// What is traced.
+#[derive(Debug, Clone, Copy)]
+pub struct DisplacedMesh<'a, 'm> {
+    /// The mesh under it.
+    pub mesh: &'a TriangleMesh,
+    /// Its reliefs: those that the displacement was made for.
+    pub reliefs: Reliefs<'a, 'm>,
+    /// What was made of both.
+    pub displacement: &'a Displacement,
+}
+
+impl Tracer {
+    /// Forgets all rays.
+    pub fn clear(&mut self) {
+        self.asked.clear();
+    }
+
+    /// Adds a ray that ends at `t_max`.
+    pub fn push(&mut self, ray: Ray, t_max: f32) {
+        self.asked.push(Asked {
+            ray,
+            best: Best {
+                t: t_max,
+                hit: None,
+            },
+            fine: None,
+            flat: None,
+        });
+    }
+
+    /// Steps taken so far, counted anew from here.
+    pub const fn take_steps(&mut self) -> u64 {
+        std::mem::replace(&mut self.steps, 0)
+    }
+
+    /// Finds what all rays meet.
+    pub fn run(&mut self, mesh: DisplacedMesh<'_, '_>, search: Search, level: SimdLevel) {
+        self.jobs.clear();
+        self.ranges.belong_to(mesh.displacement.number);
+        level.run_or_plain(Visit {
+            mesh,
+            search,
+            tracer: self,
+        });
+        self.walk(mesh, level);
+    }
+
+    /// Walks over the flat reliefs, one map after the other.
+    fn walk(&mut self, mesh: DisplacedMesh<'_, '_>, level: SimdLevel) {
+        for (material, field) in mesh.reliefs.fields.iter().enumerate() {
+            let Some(field) = field else { continue };
+            let this = |job: &&Job| usize::from(job.material) == material;
+            self.rays.clear();
+            self.rays
+                .extend(self.jobs.iter().filter(this).map(|job| job.ray));
+            if self.rays.is_empty() {
+                continue;
+            }
+            self.walks.clear();
+            self.walks.resize(self.rays.len(), Walk::NONE);
+            field.walk_all(level, &self.rays, &mut self.walks);
+            for (job, walk) in self.jobs.iter().filter(this).zip(&self.walks) {
+                self.steps += u64::from(walk.steps);
+                let Some(at) = walk.at else { continue };
+                let asked = &mut self.asked[job.asked];
+                let t = job.from + at;
+                let nearer = match asked.flat {
+                    Some((prim, known)) => t < known || (t == known && job.prim < prim),
+                    None => (t as f32) < asked.best.t,
+                };
+                if nearer {
+                    asked.flat = Some((job.prim, t));
+                }
+            }
+        }
+    }
+
+    /// Whether the ray in a place of the list met anything.
+    #[must_use]
+    pub fn is_hit(&self, index: usize) -> bool {
+        let asked = &self.asked[index];
+        asked.flat.is_some() || asked.best.hit.is_some()
+    }
+
+    /// What the ray in a place of the list met.
+    #[must_use]
+    pub fn hit(&self, mesh: DisplacedMesh<'_, '_>, index: usize) -> Option<SurfaceHit> {
+        let DisplacedMesh {
+            mesh,
+            reliefs,
+            displacement,
+        } = mesh;
+        let asked = &self.asked[index];
+        if let Some((prim, t)) = asked.flat {
+            let prism = FlatPrism::new(mesh, &reliefs, displacement, prim)?;
+            return Some(prism.hit(&asked.ray, t));
+        }
+        let patch = Patch::new(mesh, &reliefs, displacement, asked.fine?)?;
+        Some(patch.hit(asked.best.t, &asked.best.hit?))
+    }
+}
+
+struct Visit<'a, 't, 'm> {
+    mesh: DisplacedMesh<'a, 'm>,
+    search: Search,
+    tracer: &'t mut Tracer,
+}
+
+impl Kernel for Visit<'_, '_, '_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let any = self.search == Search::Any;
+        let DisplacedMesh {
+            mesh,
+            reliefs,
+            displacement,
+        } = self.mesh;
+        let mut counters = FineCounters::default();
+        let mut last_prism: Option<(u32, FlatPrism<'_, '_>)> = None;
+        let Tracer {
+            asked,
+            jobs,
+            ranges,
+            ..
+        } = self.tracer;
+        for (index, asked) in asked.iter_mut().enumerate() {
+            let mut fine_ray = None;
+            let ray = asked.ray;
+            let mut boxes = displacement.tree.along(&ray);
+            while let Some(i) = boxes.next(asked.best.t) {
+                let prim = displacement.prims[i as usize];
+                match displacement.shapes[i as usize] {
+                    Shape::Flat => {
+                        let prism = match last_prism {
+                            Some((known, prism)) if known == prim => prism,
+                            _ => {
+                                let Some(prism) =
+                                    FlatPrism::new(mesh, &reliefs, displacement, prim)
+                                else {
+                                    continue;
+                                };
+                                last_prism = Some((prim, prism));
+                                prism
+                            }
+                        };
+                        if let Some((ray, from)) = prism.clip(&ray, f64::from(asked.best.t)) {
+                            jobs.push(Job {
+                                asked: index,
+                                prim,
+                                material: mesh.attributes[prim as usize].material,
+                                from,
+                                ray,
+                            });
+                        }
+                    }
+                    Shape::Fine { segments_log2 } => {
+                        let ray = fine_ray
+                            .get_or_insert_with(|| FineRay::new(&ray, displacement.tree.reach()));
+                        let this = (prim, segments_log2);
+                        let Some(patch) = Patch::new(mesh, &reliefs, displacement, this) else {
+                            continue;
+                        };
+                        let known = asked.best.hit.map(|hit| hit.key);
+                        let door = (&reliefs, displacement);
+                        let best =
+                            patch.meet(simd, door, ray, (asked.best, any), (ranges, &mut counters));
+                        asked.best = best;
+                        if best.hit.map(|hit| hit.key) != known {
+                            asked.fine = Some(this);
+                        }
+                    }
+                }
+                if any && asked.best.hit.is_some() {
+                    break;
+                }
+            }
+        }
+        self.tracer.steps += counters.parts + counters.leaves;
+    }
+}

@@ -1,0 +1,433 @@
+//! Displaced surfaces against explicit tessellation: micro-triangles made one by one in double precision, in a
+//! tree of their own.
+
+use std::f32::consts::TAU;
+
+use glam::{DVec2, DVec3, Vec2, Vec3};
+use reliefscope::geometry::bvh::{AcceptAll, Bvh};
+use reliefscope::geometry::triangle::Watertight;
+use reliefscope::geometry::{Ray, TriangleAttributes, TriangleMesh};
+use reliefscope::math::simd::SimdLevel;
+use reliefscope::surface::displaced::{
+    DisplacedMesh, Displacement, Reliefs, Search, SurfaceHit, Tracer,
+};
+use reliefscope::surface::mapping::BoundHeight;
+use reliefscope::surface::mapping::relief::ReliefField;
+use reliefscope::texture::{Addressing, Grid, HeightMap, HeightPyramid, Wrap};
+
+use super::Random;
+
+/// Rays against each mesh: more with `RELIEFSCOPE_RAYS`.
+fn ray_count() -> u32 {
+    let asked = std::env::var("RELIEFSCOPE_RAYS").ok();
+    asked.and_then(|n| n.parse().ok()).unwrap_or(20_000)
+}
+
+const SIZE: u32 = 32;
+const AMPLITUDE: f32 = 0.12;
+const MIDLEVEL: f32 = 0.4;
+
+/// Hills with noise, so that neighbouring texels differ.
+fn map() -> HeightMap {
+    let mut random = Random(0xD15);
+    let texels = (0..SIZE * SIZE).map(|i| {
+        let (x, y) = ((i % SIZE) as f64, (i / SIZE) as f64);
+        let hill = (x * 0.4).sin() * (y * 0.6).cos() * 0.3 + 0.5;
+        ((hill + random.between(-0.2, 0.2)).clamp(0.0, 1.0) * 65_535.0) as u16
+    });
+    HeightMap::U16(Grid::new(SIZE, SIZE, texels.collect()))
+}
+
+fn addressing() -> Addressing {
+    Addressing {
+        scale: Vec2::ONE,
+        offset: Vec2::ZERO,
+        wrap: Wrap::Repeat,
+    }
+}
+
+/// A mesh of quads from corner positions, normals and texture coordinates.
+fn add_quad(mesh: &mut TriangleMesh, p: [Vec3; 4], n: Option<[Vec3; 4]>, uv: [Vec2; 4]) {
+    let first = mesh.positions.len() as u32;
+    mesh.positions.extend(p);
+    mesh.normals.extend(n.unwrap_or([Vec3::ZERO; 4]));
+    mesh.uvs.extend(uv);
+    let attributes = TriangleAttributes {
+        material: 0,
+        has_uv: true,
+        smooth: n.is_some(),
+    };
+    for triangle in [[0, 1, 2], [0, 2, 3]] {
+        mesh.indices.push(triangle.map(|i| first + i));
+        mesh.attributes.push(attributes);
+    }
+}
+
+/// A torus; `uv_of` takes the two angles in turns.
+fn torus(columns: u32, rows: u32, uv_of: impl Fn(f32, f32) -> Vec2) -> TriangleMesh {
+    let mut mesh = TriangleMesh::default();
+    let at = |i: u32, j: u32| {
+        // The last column lies exactly on the first.
+        let a = TAU * (i % columns) as f32 / columns as f32;
+        let b = TAU * (j % rows) as f32 / rows as f32;
+        let out = Vec3::new(a.cos(), a.sin(), 0.0);
+        let normal = out * b.cos() + Vec3::Z * b.sin();
+        (out + normal * 0.45, normal)
+    };
+    for (i, j) in (0..columns).flat_map(|i| (0..rows).map(move |j| (i, j))) {
+        let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
+        let uv = corners.map(|(i, j)| uv_of(i as f32 / columns as f32, j as f32 / rows as f32));
+        let points = corners.map(|(i, j)| at(i, j));
+        add_quad(
+            &mut mesh,
+            points.map(|p| p.0),
+            Some(points.map(|p| p.1)),
+            uv,
+        );
+    }
+    mesh
+}
+
+/// A cube without vertex normals: hard edges.
+fn cube() -> TriangleMesh {
+    let mut mesh = TriangleMesh::default();
+    let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+    for k in 0..3 {
+        for side in [-1.0, 1.0] {
+            let (n, u) = (axes[k] * side, axes[(k + 1) % 3]);
+            let v = n.cross(u);
+            let p = [-u - v, u - v, u + v, v - u].map(|p| p + n);
+            let uv = [[0.05, 0.1], [0.6, 0.1], [0.6, 0.55], [0.05, 0.55]].map(Vec2::from);
+            add_quad(&mut mesh, p, None, uv);
+        }
+    }
+    mesh
+}
+
+/// A flat sheet of four quads.
+fn sheet() -> TriangleMesh {
+    let mut mesh = TriangleMesh::default();
+    for (x, y) in [(-1, -1), (0, -1), (-1, 0), (0, 0)] {
+        let corner = |dx, dy| Vec3::new((x + dx) as f32, (y + dy) as f32, 0.0);
+        let p = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+        add_quad(&mut mesh, p, None, p.map(|p| p.truncate() * 0.35));
+    }
+    mesh
+}
+
+/// Closed or not, and its name.
+fn meshes() -> Vec<(&'static str, bool, TriangleMesh)> {
+    let round = |u: f32, v: f32| Vec2::new(u * 2.0, v);
+    let jumping = |u: f32, v: f32| Vec2::new(0.1 + u * 1.83, v * 0.77);
+    let mirrored = |u: f32, v: f32| Vec2::new((u - 0.5).abs() * 2.0, v);
+    vec![
+        ("torus", true, torus(12, 8, round)),
+        ("finer torus", true, torus(24, 12, round)),
+        ("seamed torus", true, torus(12, 8, jumping)),
+        ("mirrored torus", true, torus(12, 8, mirrored)),
+        ("cube", true, cube()),
+        ("sheet", false, sheet()),
+    ]
+}
+
+/// Everything that is displaced by itself, in double precision.
+struct Explicit<'a> {
+    mesh: &'a TriangleMesh,
+    map: &'a HeightMap,
+    normals: Vec<DVec3>,
+}
+
+impl<'a> Explicit<'a> {
+    fn new(mesh: &'a TriangleMesh, map: &'a HeightMap) -> Self {
+        let normal_at = |p: Vec3| {
+            let mut sum = DVec3::ZERO;
+            for (prim, vertices) in mesh.indices.iter().enumerate() {
+                for k in 0..3 {
+                    if mesh.positions[vertices[k] as usize] != p {
+                        continue;
+                    }
+                    let c = vertices.map(|i| mesh.positions[i as usize].as_dvec3());
+                    let face = (c[1] - c[0]).cross(c[2] - c[0]).normalize();
+                    let smooth = mesh.attributes[prim].smooth;
+                    let n = mesh.normals[vertices[k] as usize].as_dvec3();
+                    let angle = (c[(k + 1) % 3] - c[k]).angle_between(c[(k + 2) % 3] - c[k]);
+                    sum += if smooth { n.normalize() } else { face } * angle;
+                }
+            }
+            sum.normalize()
+        };
+        Self {
+            mesh,
+            map,
+            normals: mesh.positions.iter().map(|p| normal_at(*p)).collect(),
+        }
+    }
+
+    fn displacement(&self, uv: DVec2) -> f64 {
+        let size = f64::from(SIZE);
+        let (x, y) = (uv.x * size - 0.5, uv.y * size - 0.5);
+        let (i, j) = (x.floor(), y.floor());
+        let texel = |i: f64, j: f64| {
+            let at = |k: f64| Wrap::Repeat.index(k as i64, SIZE);
+            f64::from(self.map.texel(at(i), at(j)))
+        };
+        let (fx, fy) = (x - i, y - j);
+        let top = texel(i, j) * (1.0 - fx) + texel(i + 1.0, j) * fx;
+        let bottom = texel(i, j + 1.0) * (1.0 - fx) + texel(i + 1.0, j + 1.0) * fx;
+        (top * (1.0 - fy) + bottom * fy - f64::from(MIDLEVEL)) * f64::from(AMPLITUDE)
+    }
+
+    /// Texture coordinates on all sides of a border point given as weights of places.
+    fn sides(&self, ends: &[(Vec3, f64)]) -> Vec<DVec2> {
+        let mut sides: Vec<Vec<(Vec2, f64)>> = Vec::new();
+        for vertices in &self.mesh.indices {
+            let corner = |p: Vec3| {
+                let here = |&&i: &&u32| self.mesh.positions[i as usize] == p;
+                vertices
+                    .iter()
+                    .find(here)
+                    .map(|&i| self.mesh.uvs[i as usize])
+            };
+            let side: Option<Vec<_>> = ends.iter().map(|&(p, w)| Some((corner(p)?, w))).collect();
+            if let Some(side) = side
+                && !sides.contains(&side)
+            {
+                sides.push(side);
+            }
+        }
+        let at = |side: &Vec<(Vec2, f64)>| side.iter().map(|(uv, w)| uv.as_dvec2() * *w).sum();
+        sides.iter().map(at).collect()
+    }
+
+    /// Micro-triangles with `segments` along every edge.
+    fn cut(&self, segments: u32) -> TriangleMesh {
+        let mut cut = TriangleMesh::default();
+        for vertices in &self.mesh.indices {
+            let first = cut.positions.len() as u32;
+            let mut index = std::collections::HashMap::new();
+            for (a, b) in (0..=segments).flat_map(|b| (0..=segments - b).map(move |a| (a, b))) {
+                index.insert((a, b), first + index.len() as u32);
+                let n = f64::from(segments);
+                let w = [
+                    f64::from(segments - a - b) / n,
+                    f64::from(a) / n,
+                    f64::from(b) / n,
+                ];
+                cut.positions.push(self.point(*vertices, w).as_vec3());
+            }
+            for (a, b) in (0..segments).flat_map(|b| (0..segments - b).map(move |a| (a, b))) {
+                cut.indices
+                    .push([(a, b), (a + 1, b), (a, b + 1)].map(|place| index[&place]));
+                if a + b + 2 <= segments {
+                    let turned = [(a + 1, b), (a + 1, b + 1), (a, b + 1)];
+                    cut.indices.push(turned.map(|place| index[&place]));
+                }
+            }
+        }
+        cut.attributes = vec![TriangleAttributes::default(); cut.indices.len()];
+        cut
+    }
+
+    fn point(&self, vertices: [u32; 3], w: [f64; 3]) -> DVec3 {
+        let i = vertices.map(|i| i as usize);
+        let [p, n] = [0, 1].map(|what| {
+            (0..3)
+                .map(|k| match what {
+                    0 => self.mesh.positions[i[k]].as_dvec3() * w[k],
+                    _ => self.normals[i[k]] * w[k],
+                })
+                .sum::<DVec3>()
+        });
+        let ends: Vec<_> = (0..3)
+            .filter(|&k| w[k] != 0.0)
+            .map(|k| (self.mesh.positions[i[k]], w[k]))
+            .collect();
+        let d = if ends.len() < 3 {
+            let sides = self.sides(&ends);
+            let count = sides.len() as f64;
+            sides
+                .into_iter()
+                .map(|uv| self.displacement(uv))
+                .sum::<f64>()
+                / count
+        } else {
+            let uv = (0..3).map(|k| self.mesh.uvs[i[k]].as_dvec2() * w[k]).sum();
+            self.displacement(uv)
+        };
+        p + n * d
+    }
+}
+
+/// As many segments as the longest edge asks for.
+fn segments(mesh: &TriangleMesh) -> u32 {
+    let mut longest = 0.0_f32;
+    for vertices in &mesh.indices {
+        let uv = vertices.map(|i| mesh.uvs[i as usize] * SIZE as f32);
+        for k in 0..3 {
+            longest = longest.max(uv[k].distance(uv[(k + 1) % 3]));
+        }
+    }
+    ((2.0 * longest).ceil() as u32).max(4).next_power_of_two()
+}
+
+/// A ray from around the mesh into it, or from anywhere to anywhere near.
+fn any_ray(random: &mut Random) -> Ray {
+    let mut point = |size: f64| Vec3::from([0; 3].map(|_| (random.between(-size, size)) as f32));
+    let (origin, target) = (point(3.0), point(1.5));
+    Ray {
+        origin,
+        dir: (target - origin).normalize(),
+    }
+}
+
+#[test]
+fn displaced_surfaces_are_those_of_explicit_tessellation() {
+    let map = map();
+    let pyramid = HeightPyramid::new(&map, Wrap::Repeat);
+    let height = BoundHeight::new(&map, addressing(), AMPLITUDE, -AMPLITUDE * MIDLEVEL);
+    let fields = [ReliefField::new(height, &pyramid)];
+    let reliefs = Reliefs {
+        fields: &fields,
+        weld_seams: true,
+    };
+    for (name, _, mesh) in meshes() {
+        let displacement = Displacement::new(&mesh, &reliefs);
+        let [flat, fine] = displacement.kinds();
+        assert!(
+            (flat == 0) == (name != "sheet") && flat + fine == mesh.len(),
+            "{name}"
+        );
+        let is_flat = flat > 0;
+        let displaced = DisplacedMesh {
+            mesh: &mesh,
+            reliefs,
+            displacement: &displacement,
+        };
+        // A flat relief is bilinear: cut it finely.
+        let segments = if is_flat { 128 } else { segments(&mesh) };
+        let explicit = Explicit::new(&mesh, &map).cut(segments);
+        let tree = Bvh::build(&explicit);
+        let tolerance = if is_flat { 1e-3 } else { 2e-5 };
+        let mut random = Random(0x7E55);
+        let rays: Vec<Ray> = (0..ray_count()).map(|_| any_ray(&mut random)).collect();
+        let found = trace(displaced, &rays, SimdLevel::best());
+        let truth = |ray: &Ray| {
+            tree.intersect::<Watertight, _>(ray, f32::INFINITY, &AcceptAll)
+                .map(|h| h.t)
+        };
+        let mut hits = 0;
+        for (ray, found) in rays.iter().zip(&found) {
+            hits += u32::from(found.is_some());
+            let same = |ray: &Ray| match (found.map(|hit| hit.t), truth(ray)) {
+                (None, None) => true,
+                (Some(a), Some(b)) => (a - b).abs() < tolerance * 4.0,
+                _ => false,
+            };
+            // Past a silhouette a ray may go either way: so may its neighbours, then.
+            let side = ray.dir.any_orthonormal_vector();
+            let up = ray.dir.cross(side);
+            let near = [Vec3::ZERO, side, -side, up, -up];
+            let beside = |step: &Vec3| {
+                same(&Ray {
+                    origin: ray.origin + *step * tolerance,
+                    ..*ray
+                })
+            };
+            assert!(
+                near.iter().any(beside),
+                "{name}: {:?} is not {:?} on {ray:?}",
+                found.map(|hit| hit.t),
+                truth(ray)
+            );
+        }
+        assert!(hits > ray_count() / 4, "{name}: {hits} hits");
+    }
+}
+
+fn trace(mesh: DisplacedMesh<'_, '_>, rays: &[Ray], level: SimdLevel) -> Vec<Option<SurfaceHit>> {
+    let mut tracer = Tracer::default();
+    for ray in rays {
+        tracer.push(*ray, f32::INFINITY);
+    }
+    tracer.run(mesh, Search::Closest, level);
+    (0..rays.len()).map(|i| tracer.hit(mesh, i)).collect()
+}
+
+#[test]
+fn closed_displaced_surfaces_let_no_ray_out() {
+    let map = map();
+    let pyramid = HeightPyramid::new(&map, Wrap::Repeat);
+    let height = BoundHeight::new(&map, addressing(), AMPLITUDE, -AMPLITUDE * MIDLEVEL);
+    let fields = [ReliefField::new(height, &pyramid)];
+    let reliefs = Reliefs {
+        fields: &fields,
+        weld_seams: true,
+    };
+    for (name, closed, mesh) in meshes() {
+        if !closed {
+            continue;
+        }
+        let displacement = Displacement::new(&mesh, &reliefs);
+        let displaced = DisplacedMesh {
+            mesh: &mesh,
+            reliefs,
+            displacement: &displacement,
+        };
+        let explicit = Explicit::new(&mesh, &map).cut(segments(&mesh));
+        let mut random = Random(0x1EAC);
+        // From inside, at vertices and edges of the micro-triangles: where leaks are.
+        let inside = if name == "cube" { Vec3::ZERO } else { Vec3::X };
+        let mut aimed = || {
+            let prim = random.between(0.0, explicit.len() as f64) as u32;
+            let corners = explicit.corners(prim);
+            let along = random.between(0.0, 1.5).min(1.0) as f32;
+            let target = corners[0].lerp(corners[1], along);
+            Ray {
+                origin: inside + Vec3::from([0; 3].map(|_| random.between(-0.1, 0.1) as f32)),
+                dir: (target - inside).normalize(),
+            }
+        };
+        let rays: Vec<Ray> = (0..ray_count()).map(|_| aimed()).collect();
+        let leaks = trace(displaced, &rays, SimdLevel::best());
+        let leaks = leaks.iter().filter(|hit| hit.is_none()).count();
+        assert_eq!(leaks, 0, "{name}");
+    }
+}
+
+#[test]
+fn every_level_meets_the_same_points() {
+    let map = map();
+    let pyramid = HeightPyramid::new(&map, Wrap::Repeat);
+    let height = BoundHeight::new(&map, addressing(), AMPLITUDE, -AMPLITUDE * MIDLEVEL);
+    let fields = [ReliefField::new(height, &pyramid)];
+    let reliefs = Reliefs {
+        fields: &fields,
+        weld_seams: true,
+    };
+    for (name, _, mesh) in meshes() {
+        let displacement = Displacement::new(&mesh, &reliefs);
+        let displaced = DisplacedMesh {
+            mesh: &mesh,
+            reliefs,
+            displacement: &displacement,
+        };
+        let mut random = Random(0x1E7E);
+        let rays: Vec<Ray> = (0..500).map(|_| any_ray(&mut random)).collect();
+        let plain = trace(displaced, &rays, SimdLevel::Scalar);
+        for level in SimdLevel::ALL.into_iter().filter(|l| l.is_available()) {
+            assert_eq!(trace(displaced, &rays, level), plain, "{name}, {level}");
+        }
+        // Rays alone, and asked for anything at all, agree.
+        for (ray, hit) in rays.iter().zip(&plain) {
+            assert_eq!(
+                trace(displaced, &[*ray], SimdLevel::best()),
+                [*hit],
+                "{name}"
+            );
+            let mut tracer = Tracer::default();
+            tracer.push(*ray, f32::INFINITY);
+            tracer.run(displaced, Search::Any, SimdLevel::best());
+            assert_eq!(tracer.is_hit(0), hit.is_some(), "{name}");
+        }
+    }
+}
