@@ -2,6 +2,7 @@
 
 mod compare;
 mod controls;
+mod crash;
 mod driver;
 mod files;
 mod navigation;

@@ -6,7 +6,6 @@ use glam::{DVec2, DVec3};
 
 use super::trees::levels;
 use super::{Finding, convex};
-use crate::geometry::simd::SimdLevel;
 use crate::math::LinearRgb;
 use crate::render::{Counters, Picture, Progressive, Snapshot};
 use crate::scene::built_in::assemble;
@@ -27,8 +26,10 @@ const DISTANCE: f64 = 3.0;
 /// A plane z = 0 with maps; everything about it may be changed before it is rendered.
 #[derive(Debug, Clone)]
 pub(super) struct Board {
-    /// Geometry and maps.
-    pub scene: Scene,
+    /// Geometry and maps. What searches make of the maps is kept from picture to picture.
+    scene: Arc<Scene>,
+    /// Whether all levels of the machine are compared.
+    at_all_levels: bool,
     /// Everything else.
     pub settings: RenderSettings,
 }
@@ -61,10 +62,36 @@ impl Board {
             material.maps.push(slot);
             images.push(MapImage::new(role.name(), None, raw));
         }
+        Self::of(scene(&plane(), images), settings(material))
+    }
+
+    /// Any scene.
+    pub fn of(scene: Scene, settings: RenderSettings) -> Self {
         Self {
-            scene: scene(&plane(), images),
-            settings: settings(material),
+            scene: Arc::new(scene),
+            at_all_levels: true,
+            settings,
         }
+    }
+
+    /// The same maps on other geometry.
+    pub fn on(self, mesh: &WorldMesh) -> Self {
+        let images = self.scene.images.clone();
+        Self::of(scene(mesh, images), self.settings)
+    }
+
+    /// Without the other levels: what is made of a large map is made once.
+    pub fn alone(mut self) -> Self {
+        self.at_all_levels = false;
+        self
+    }
+
+    /// The scene at all other levels of the machine, with what the last picture made of its maps.
+    fn twins(&self) -> impl Iterator<Item = Arc<Scene>> {
+        let best = self.scene.bvh.level();
+        let others = levels().into_iter();
+        let others = others.filter(move |&level| self.at_all_levels && level != best);
+        others.map(|level| Arc::new(convex::at_level(&self.scene, level)))
     }
 
     /// Looks at the middle, `angle` degrees off the normal; so narrow that all rays are about as slanted.
@@ -86,13 +113,12 @@ impl Board {
 
     /// One sample of each pixel.
     pub fn render(&self, side: u32) -> Rendered {
-        self.render_at(self.scene.bvh.level(), side)
+        self.render_scene(&self.scene, side)
     }
 
-    /// The same by other vector instructions.
-    pub fn render_at(&self, level: SimdLevel, side: u32) -> Rendered {
+    fn render_scene(&self, scene: &Arc<Scene>, side: u32) -> Rendered {
         let snapshot = Snapshot {
-            scene: Arc::new(convex::at_level(&self.scene, level)),
+            scene: Arc::clone(scene),
             settings: Arc::new(self.settings.clone()),
             size: [side; 2],
         };
@@ -129,12 +155,10 @@ impl Album {
         let first = board.render(side);
         self.pixels += first.picture.pixels.len() as u64;
         self.non_finite += first.counters.non_finite;
-        for level in levels() {
-            if level != board.scene.bvh.level() {
-                let twin = board.render_at(level, side);
-                self.non_finite += twin.counters.non_finite;
-                self.differing += convex::differing(&twin.picture, &first.picture);
-            }
+        for scene in board.twins() {
+            let twin = board.render_scene(&scene, side);
+            self.non_finite += twin.counters.non_finite;
+            self.differing += convex::differing(&twin.picture, &first.picture);
         }
         first
     }
@@ -165,7 +189,7 @@ pub(super) fn plane() -> WorldMesh {
 }
 
 /// A scene of any mesh.
-pub(super) fn scene(mesh: &WorldMesh, images: Vec<MapImage>) -> Scene {
+fn scene(mesh: &WorldMesh, images: Vec<MapImage>) -> Scene {
     let source = SceneSource::BuiltIn("board".to_owned());
     assemble("board", source, mesh, images, &LoadOptions::default())
 }

@@ -27,17 +27,12 @@ impl Body {
     }
 }
 
-/// A cube of `n × n` quads a face, its vertices pushed to the unit sphere: convex up to rounding, and no
-/// poles.
+/// A cube of `n × n` quads a face, its vertices pushed to the unit sphere and each quad cut along its ridge:
+/// convex, and no poles.
 pub(super) fn sphere(n: i32) -> Body {
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    let mut vertices: Vec<DVec3> = Vec::new();
+    let mut triangles = Vec::new();
     let mut shared = HashMap::new();
-    let mut vertex = |key: [i32; 3]| {
-        *shared.entry(key).or_insert_with(|| {
-            vertices.push(DVec3::from_array(key.map(f64::from)).normalize_or_zero());
-            vertices.len() as u32 - 1
-        })
-    };
     for (axis, side) in (0..3).flat_map(|axis| [(axis, n), (axis, -n)]) {
         for (x, y) in (0..n * n).map(|i| (i % n, i / n)) {
             let corners = [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)];
@@ -45,13 +40,15 @@ pub(super) fn sphere(n: i32) -> Body {
                 let mut key = [side; 3];
                 key[(axis + 1) % 3] = 2 * x - n;
                 key[(axis + 2) % 3] = 2 * y - n;
-                vertex(key)
+                *shared.entry(key).or_insert_with(|| {
+                    vertices.push(DVec3::from_array(key.map(f64::from)).normalize_or_zero());
+                    vertices.len() as u32 - 1
+                })
             });
             if side < 0 {
                 quad.reverse();
             }
-            let [a, b, c, d] = quad;
-            triangles.extend([[a, b, c], [a, c, d]]);
+            triangles.extend(cut(&vertices, quad));
         }
     }
     Body {
@@ -59,6 +56,16 @@ pub(super) fn sphere(n: i32) -> Body {
         vertices,
         triangles,
         inside: |random| random.cube() * 0.5,
+    }
+}
+
+/// Two triangles of a quad that meet in a ridge, not in a valley.
+fn cut(vertices: &[DVec3], [a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
+    let [p, q, r, s] = [a, b, c, d].map(|i| vertices[i as usize]);
+    if (q - p).cross(r - p).dot(s - p) <= 0.0 {
+        [[a, b, c], [a, c, d]]
+    } else {
+        [[a, b, d], [b, c, d]]
     }
 }
 
@@ -152,6 +159,19 @@ mod tests {
     use std::collections::HashMap;
 
     use super::*;
+
+    #[test]
+    fn spheres_are_convex() {
+        for n in [3, 16] {
+            let body = sphere(n);
+            for t in &body.triangles {
+                let [a, b, c] = t.map(|i| body.vertices[i as usize]);
+                let normal = (b - a).cross(c - a).normalize_or_zero();
+                let above = body.vertices.iter().map(|p| normal.dot(*p - a));
+                assert!(above.fold(0.0, f64::max) < 1e-14);
+            }
+        }
+    }
 
     #[test]
     fn bodies_are_closed_and_face_outwards() {

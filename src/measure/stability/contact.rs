@@ -18,6 +18,11 @@ const GAP_BAR: f64 = 1e-3;
 const GAP_ULPS: f64 = 16.0;
 /// The light is at least this high over the surface (sine): lower, a flat triangle is not lit for certain.
 const LOWEST: f64 = 1e-3;
+/// Nor is it lower than this many units in the last place of `f32` over an edge: far from the origin and not
+/// normalised, rounding has bent the body by so much that it is no longer convex.
+const BENT_ULPS: f64 = 4.0;
+/// Shortest edge of the body, radii.
+const EDGE: f64 = 0.08;
 
 /// Two lines for each placement.
 pub(super) fn tests(_plan: &Plan) -> Vec<Test> {
@@ -102,12 +107,18 @@ impl<'a> Place<'a> {
             self.plan.offset_rule.origin_rule(),
         );
         let dir = dir.as_vec3();
-        let lit = dir.as_dvec3().dot(normal) > LOWEST;
+        let bent = BENT_ULPS * self.ulp() / EDGE;
+        let lit = dir.as_dvec3().dot(normal) > LOWEST.max(bent);
         lit.then_some(Leaving {
             ray: Ray { origin, dir },
             normal,
             corner: a,
         })
+    }
+
+    /// Unit in the last place of the largest coordinate, radii.
+    fn ulp(&self) -> f64 {
+        f64::from(f32::EPSILON) * f64::from(self.scene.bvh.reach()) / self.radius()
     }
 
     /// Internal units of the body's radius.
@@ -147,9 +158,7 @@ fn gap(plan: &Plan, name: &str, placement: Placement) -> Finding {
             cases += 1;
         }
     }
-    let reach = f64::from(place.scene.bvh.reach());
-    let resolvable = GAP_ULPS * f64::from(f32::EPSILON) * reach / place.radius();
-    let bar = GAP_BAR.max(resolvable);
+    let bar = GAP_BAR.max(GAP_ULPS * place.ulp());
     let note = if bar > GAP_BAR {
         format!("bar: {GAP_ULPS} units in the last place of f32")
     } else {

@@ -17,7 +17,9 @@ use crate::surface::mapping::{MappingSettings, Method};
 /// A line for each placement, flat and smooth.
 pub(super) fn tests(_plan: &Plan) -> Vec<Test> {
     let mut all = Vec::new();
-    for placement in Placement::all() {
+    // Farther away and not normalised, rounding leaves no convex body.
+    let is_convex = |p: &Placement| p.normalize || p.offset <= 100.0;
+    for placement in Placement::all().into_iter().filter(is_convex) {
         for smooth in [false, true] {
             let word = if smooth { "smooth" } else { "flat" };
             let name = format!("{word} sphere, {}", placement.name());

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::board::{Album, Board, bumps, plane, scene, tilts};
+use super::board::{Album, Board, bumps, plane, tilts};
 use super::convex::differing;
 use super::{Finding, Plan, Test};
 use crate::scene::built_in::meshes::{Vertex, WorldMesh};
@@ -61,8 +61,7 @@ pub(super) fn tests(_plan: &Plan) -> Vec<Test> {
 }
 
 fn board(mesh: &WorldMesh) -> Board {
-    let mut board = Board::new(bumps(64), tilts(64));
-    board.scene = scene(mesh, board.scene.images.clone());
+    let mut board = Board::new(bumps(64), tilts(64)).on(mesh);
     board.seen_at(50.0);
     board
 }
@@ -139,8 +138,9 @@ fn with_rubbish(mesh: &mut WorldMesh) {
     };
     for i in 0..64 {
         let x = f64::from(i) / 32.0 - 1.0;
+        // In the plane, so that the box around all of it stays.
         mesh.vertices
-            .extend([at(x, -1.0, 0.5), at(x, 0.0, 0.5), at(x, 1.0, 0.5)]);
+            .extend([at(x, -1.0, 0.0), at(x, 0.0, 0.0), at(x, 1.0, 0.0)]);
         let [a, b, c] = [0, 1, 2].map(|j| first + 3 * i + j);
         for corners in [[a, b, c], [a, a, b], [c, c, c]] {
             mesh.indices.push(corners);

@@ -34,19 +34,18 @@ pub(super) fn tests(_plan: &Plan) -> Vec<Test> {
     all
 }
 
-fn board(method: Method, angle: f64, tiles: f64) -> Board {
-    let mut board = Board::new(bumps(SIDE), tilts(SIDE));
-    board.seen_at(angle);
-    board.mapped(method, tiles);
-    board
+fn board() -> Board {
+    Board::new(bumps(SIDE), tilts(SIDE))
 }
 
 fn finite(plan: &Plan, method: Method, angle: f64) -> Finding {
     let side = plan.effort.pick(8, 16, 96);
     let mut album = Album::default();
+    let mut board = board();
+    board.seen_at(angle);
     for tiles in AMPLITUDES {
         for lookup in Lookup::ALL {
-            let mut board = board(method, angle, tiles);
+            board.mapped(method, tiles);
             board.settings.mapping.lookup = lookup;
             album.add(&board, side);
         }
@@ -55,11 +54,12 @@ fn finite(plan: &Plan, method: Method, angle: f64) -> Finding {
 }
 
 /// Most steps that a search may need from top to bottom, self-shadow left out.
-fn most_steps(method: Method, board: &Board) -> f64 {
+fn most_steps(method: Method, board: &Board, angle: f64) -> f64 {
     let mapping = &board.settings.mapping;
     if method == Method::Exact {
-        // As far as the ray runs within the relief: down from its top in tiles, texel by texel at the worst.
-        let tiles = mapping.amplitude.unwrap_or(0.0) / TILE * 90_f64.to_radians().tan().min(1e4);
+        // As far as the most slanted ray runs within the relief, in tiles; texel by texel at the worst.
+        let steepest = (0.2 * (90.0 - angle)).to_radians().tan();
+        let tiles = mapping.amplitude.unwrap_or(0.0) / TILE / steepest;
         return 64.0 + 4.0 * f64::from(2 * SIDE) * (tiles + 2.0);
     }
     f64::from(mapping.search.layers + mapping.search.bisections + mapping.search.iterations + 2)
@@ -68,15 +68,17 @@ fn most_steps(method: Method, board: &Board) -> f64 {
 fn steps(plan: &Plan, method: Method) -> Finding {
     let side = plan.effort.pick(8, 24, 96);
     let (mut pixels, mut worst, mut most) = (0, 0.0_f64, 0.0_f64);
+    let mut board = board();
+    board.settings.mapping.search.self_shadow = false;
     for angle in ANGLES {
         for tiles in AMPLITUDES {
-            let mut board = board(method, angle, tiles);
-            board.settings.mapping.search.self_shadow = false;
+            board.seen_at(angle);
+            board.mapped(method, tiles);
             let rendered = board.render(side);
             let rays = rendered.counters.camera_rays;
             pixels += rays;
             let mean = rendered.counters.relief_steps as f64 / rays.max(1) as f64;
-            worst = worst.max(mean / most_steps(method, &board));
+            worst = worst.max(mean / most_steps(method, &board, angle));
             most = most.max(mean);
         }
     }
@@ -88,12 +90,15 @@ fn steps(plan: &Plan, method: Method) -> Finding {
 fn flat(plan: &Plan, method: Method) -> Finding {
     let side = plan.effort.pick(16, 48, 192);
     let (mut pixels, mut wrong) = (0, 0);
+    let mut board = board();
+    // Normal maps keep their own relief whatever the amplitude says, unless they hold none.
+    board.settings.mapping.use_normal = !matches!(method, Method::Normal | Method::Slope);
     for angle in ANGLES {
-        let none = board(Method::None, angle, 0.0).render(side).picture;
-        let mut with = board(method, angle, 0.0);
-        // Normal maps keep their own relief whatever the amplitude says, unless they hold none.
-        with.settings.mapping.use_normal = !matches!(method, Method::Normal | Method::Slope);
-        let picture = with.render(side).picture;
+        board.seen_at(angle);
+        board.mapped(Method::None, 0.0);
+        let none = board.render(side).picture;
+        board.mapped(method, 0.0);
+        let picture = board.render(side).picture;
         pixels += picture.pixels.len() as u64;
         wrong += differing(&picture, &none);
     }

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::board::{Album, Board, bumps, plane, scene, tilts};
+use super::board::{Album, Board, bumps, plane, tilts};
 use super::{Finding, Plan, Test};
 use crate::math::{LinearRgb, V3};
 use crate::measure::report_equations as report;
@@ -142,7 +142,7 @@ fn dark(plan: &Plan) -> Finding {
 
 /// Two planes that face each other and reflect all.
 fn mirrors(plan: &Plan, bounces: u32) -> Finding {
-    let mut board = board();
+    let board = board();
     let mut mesh: WorldMesh = plane();
     let mut above = plane();
     for vertex in &mut above.vertices {
@@ -153,7 +153,7 @@ fn mirrors(plan: &Plan, bounces: u32) -> Finding {
         corners.swap(1, 2);
     }
     mesh.append(above);
-    board.scene = scene(&mesh, board.scene.images.clone());
+    let mut board = board.on(&mesh);
     let material = &mut board.settings.materials[0];
     (material.reflectivity, material.kd) = (1.0, LinearRgb::WHITE);
     board.settings.shading.max_bounces = bounces;

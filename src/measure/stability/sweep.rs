@@ -11,14 +11,16 @@ use super::placement::Placement;
 use super::{Finding, Plan, Test, bodies};
 use crate::math::LinearRgb;
 use crate::render::Picture;
-use crate::scene::{Camera, Scene};
+use crate::scene::Camera;
 use crate::shading::{Light, LightKind, Material};
 use crate::surface::mapping::Method;
 
 /// The way in fine steps may be this much longer than in coarse ones, `FINE / COARSE` if it were flicker.
 const BAR: f64 = 1.5;
-/// Steps over one pixel.
-const COARSE: u32 = 4;
+/// Steps over one pixel: more than there are texels in it.
+const COARSE: u32 = 16;
+/// Texels along a side of the map.
+const SIDE: u32 = 8;
 
 /// A line for each method, and one for each extreme placement.
 pub(super) fn tests(_plan: &Plan) -> Vec<Test> {
@@ -27,7 +29,7 @@ pub(super) fn tests(_plan: &Plan) -> Vec<Test> {
         for angle in [45.0, 85.0] {
             let name = format!("{}, {angle} degrees", method.name());
             all.push(Test::new("sweep", name, move |plan| {
-                let mut board = Board::new(bumps(64), tilts(64));
+                let mut board = Board::new(bumps(SIDE), tilts(SIDE));
                 board.seen_at(angle);
                 board.mapped(method, 0.1);
                 swept(plan, &board)
@@ -45,8 +47,8 @@ pub(super) fn tests(_plan: &Plan) -> Vec<Test> {
 
 /// How much longer the way gets in fine steps.
 fn swept(plan: &Plan, board: &Board) -> Finding {
-    let side = plan.effort.pick(16, 32, 128);
-    let fine = plan.effort.pick(16, 64, 256);
+    let side = plan.effort.pick(12, 24, 96);
+    let fine = plan.effort.pick(48, 64, 256);
     let pixels = u64::from(side * side * fine);
     let (coarse, way) = (travel(board, side, COARSE), travel(board, side, fine));
     Finding::worst_of(pixels, "times as far", way / coarse, Some(BAR))
@@ -86,20 +88,18 @@ fn distance(a: &Picture, b: &Picture) -> f64 {
 
 /// A flat-shaded sphere in the sun, far from anything.
 fn sphere(placement: &Placement) -> Board {
-    let scene: Scene = placement.scene(&bodies::sphere(16), false);
-    let mut board = Board::with_maps(Vec::new());
+    let mut settings = Board::with_maps(Vec::new()).settings;
     let sun = LightKind::Directional {
         direction: DVec3::new(-0.6, 0.8, -0.3),
     };
-    board.scene = scene;
-    board.settings.lights = vec![Light::new("sun", sun, 1.0)];
-    board.settings.materials = vec![Material::matte("clay", LinearRgb::new(0.7, 0.6, 0.5))];
-    board.settings.mapping.method = Method::None;
-    board.settings.camera = Camera {
+    settings.lights = vec![Light::new("sun", sun, 1.0)];
+    settings.materials = vec![Material::matte("clay", LinearRgb::new(0.7, 0.6, 0.5))];
+    settings.mapping.method = Method::None;
+    settings.camera = Camera {
         eye: placement.world(DVec3::new(0.5, -2.6, 0.8)),
         target: placement.world(DVec3::ZERO),
         up: DVec3::Z,
         vfov: 45_f64.to_radians(),
     };
-    board
+    Board::of(placement.scene(&bodies::sphere(16), false), settings)
 }
