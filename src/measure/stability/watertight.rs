@@ -31,7 +31,8 @@ fn leaks(plan: &Plan, name: &str, body: &Body, placement: Placement) -> Finding 
     let scene = placement.scene(body, false);
     let trees = Trees::new(plan.kernel, &scene.bvh);
     let mut random = plan.random(name);
-    let bunches = plan.effort.pick(8, 160, 9_000) / share(body);
+    let bunches = plan.effort.pick(8, 160, 3_000) / share(body);
+    let bunches = bunches.max(1);
     let (mut leaks, mut disagreeing) = (0, 0);
     for bunch in 0..bunches {
         let mut from = || placement.internal(&scene.normalization, (body.inside)(&mut random));
@@ -61,7 +62,7 @@ fn leaks(plan: &Plan, name: &str, body: &Body, placement: Placement) -> Finding 
 
 /// Bodies with many triangles at a corner get fewer rays: each ray at the corner meets them all.
 const fn share(body: &Body) -> usize {
-    if body.triangles.len() > 10_000 { 8 } else { 1 }
+    if body.triangles.len() > 10_000 { 80 } else { 1 }
 }
 
 /// Rays from one point to neighbouring triangles.

@@ -44,6 +44,32 @@ fn names_that_are_nowhere_are_looked_for_in_step_with_their_number() {
     load(&model, &library);
 }
 
+/// Ear clipping looked for diagonals in a tangle of 9000 corners over 4 places: a minute.
+#[test]
+fn a_face_that_repeats_its_corners_is_quick() {
+    let model = format!("{QUAD}v 1 1 0\nf{}\n", " 1 2 3 4 1 3".repeat(1500));
+    let warnings = load(&model, "");
+    assert!(
+        warnings.iter().any(|w| w.contains("crosses itself")),
+        "{warnings:?}"
+    );
+}
+
+/// `Kd 1e38` made pixels that were not finite.
+#[test]
+fn colours_without_measure_stay_finite() {
+    let mut bench = super::Bench::new();
+    for line in [
+        "Kd 0.5 0.4 1e38",
+        "Ks 0 0 1e38",
+        "Kd -1e38 0 9e18\nKs 1e38 1e38 1e38",
+    ] {
+        let library = format!("newmtl a\n{line}\nnewmtl b\nillum 3\n{line}\n");
+        let answer = bench.read(super::corpus::Format::Mtl, library.as_bytes());
+        assert_eq!(answer, super::Answer::Read, "{line}");
+    }
+}
+
 #[test]
 fn a_name_as_long_as_a_file_is_cut() {
     let name = "n".repeat(1 << 20);
