@@ -34,12 +34,8 @@ fn every_test_keeps_to_its_bar() {
 /// What catches nothing in a textbook kernel would catch nothing in ours.
 #[test]
 fn textbook_kernels_fall_short() {
-    for (kernel, families) in [
-        (Kernel::MollerTrumbore, ["watertight", "borders"]),
-        (Kernel::Report, ["watertight", "borders"]),
-        (Kernel::Woop, ["accuracy", "borders"]),
-    ] {
-        for family in families {
+    for kernel in [Kernel::MollerTrumbore, Kernel::Report] {
+        for family in ["watertight", "borders", "accuracy"] {
             let outcomes = by_rays(Plan { kernel, ..PLAN }, &[family]);
             assert!(
                 !shortfalls(&outcomes).is_empty(),
@@ -48,6 +44,18 @@ fn textbook_kernels_fall_short() {
             );
         }
     }
+}
+
+/// Woop's test in single precision leaks nothing that these few rays find, but loses digits as the view grazes.
+#[test]
+fn distances_lose_digits_without_double_precision() {
+    let worst = |kernel| {
+        let outcomes = by_rays(Plan { kernel, ..PLAN }, &["accuracy"]);
+        let grazing = outcomes.iter().find(|o| o.name.starts_with("t, 89"));
+        grazing.expect("there is such a test").finding.figure
+    };
+    let (woop, ours) = (worst(Kernel::Woop), worst(Kernel::Watertight));
+    assert!(woop > 20.0 * ours, "{woop} against {ours}");
 }
 
 #[test]

@@ -116,7 +116,8 @@ struct Tally {
     read: usize,
     refused: usize,
     crashed: usize,
-    slowest: Duration,
+    /// With the case's number.
+    slowest: (Duration, usize),
     failures: Vec<String>,
 }
 
@@ -147,7 +148,7 @@ fn work(corpus: &[Entry], seed: usize, cases: usize, next: &AtomicUsize, tally: 
         let answer = catch_unwind(AssertUnwindSafe(|| bench.read(format, &bytes)));
         let spent = began.elapsed();
         let mut tally = tally.lock().expect("nobody panics with it");
-        tally.slowest = tally.slowest.max(spent);
+        tally.slowest = tally.slowest.max((spent, number));
         match answer {
             Ok(Answer::Read) => tally.read += 1,
             Ok(Answer::Refused) => tally.refused += 1,
@@ -187,8 +188,8 @@ fn mutated_files_are_read_or_refused() {
     });
     let tally = tally.into_inner().expect("nobody panics with it");
     println!(
-        "seed {seed}: {cases} cases, {} read, {} refused, {} decoder crashes caught, slowest {:?}",
-        tally.read, tally.refused, tally.crashed, tally.slowest
+        "seed {seed}: {cases} cases, {} read, {} refused, {} decoder crashes caught, slowest {:?} (case {})",
+        tally.read, tally.refused, tally.crashed, tally.slowest.0, tally.slowest.1
     );
     assert!(
         tally.failures.is_empty(),
