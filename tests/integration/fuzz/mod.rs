@@ -155,7 +155,7 @@ fn work(corpus: &[Entry], seed: usize, cases: usize, next: &AtomicUsize, tally: 
             Ok(Answer::DecoderCrashed) => {
                 tally.crashed += 1;
                 let kept = keep(format, number, &bytes);
-                println!("a decoder crashed and was caught: {}", kept.display());
+                eprintln!("a decoder crashed and was caught: {}", kept.display());
             }
             Err(_) => {
                 bench = Bench::new();
@@ -187,7 +187,7 @@ fn mutated_files_are_read_or_refused() {
         }
     });
     let tally = tally.into_inner().expect("nobody panics with it");
-    println!(
+    eprintln!(
         "seed {seed}: {cases} cases, {} read, {} refused, {} decoder crashes caught, slowest {:?} (case {})",
         tally.read, tally.refused, tally.crashed, tally.slowest.0, tally.slowest.1
     );

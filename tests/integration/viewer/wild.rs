@@ -133,7 +133,7 @@ fn act(driver: &mut Driver, random: &mut Random) {
 fn whatever_the_hand_does_pictures_come() {
     let actions = setting("RELIEFSCOPE_WILD_ACTIONS", ACTIONS);
     let seed = setting("RELIEFSCOPE_WILD_SEED", 1);
-    println!("seed {seed}, {actions} actions");
+    eprintln!("seed {seed}, {actions} actions");
     let mut random = Random::new(seed as u64);
     let mut driver = Driver::reference();
     for action in 0..actions {
