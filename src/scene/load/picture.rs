@@ -21,6 +21,9 @@ pub struct PictureLimits {
     pub max_bytes: u64,
 }
 
+/// What a file may hold beside twice its samples: headers, colour profiles.
+const SPARE_BYTES: u64 = 1 << 20;
+
 impl Default for PictureLimits {
     /// 16384² pixels, 2 GiB: enough for four channels of 16 bits at full size.
     fn default() -> Self {
@@ -73,12 +76,13 @@ fn decode(path: &Path, limits: &PictureLimits) -> Result<DecodedPicture, Picture
     if !facts.is_file() {
         return Err(PictureError::new(&"not a plain file"));
     }
-    if facts.len() > limits.max_bytes {
-        let message = format!(
-            "a file of {} bytes; at most {} are read",
-            facts.len(),
-            limits.max_bytes
-        );
+    // Decoders may hold all of it beside the samples.
+    let most = limits
+        .max_bytes
+        .saturating_mul(2)
+        .saturating_add(SPARE_BYTES);
+    if facts.len() > most {
+        let message = format!("a file of {} bytes; at most {most} are read", facts.len());
         return Err(PictureError(message));
     }
     let mut file = BufReader::new(File::open(path).map_err(io)?);
