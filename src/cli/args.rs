@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand};
 
 use super::bench::BenchArgs;
 use super::help;
+use super::stability::StabilityArgs;
 use crate::scene::file::check_size;
 use crate::surface::mapping::Method;
 
@@ -50,6 +51,9 @@ pub(super) enum Command {
     /// Time frames, rays and their growth; write and race files of rays
     #[command(after_help = help::BENCH_EXAMPLES, after_long_help = help::bench_details())]
     Bench(BenchArgs),
+    /// Test the program where numbers are very large, very small or very slanted
+    #[command(after_help = help::STABILITY_EXAMPLES, after_long_help = help::stability_details())]
+    Stability(StabilityArgs),
     /// List the ways of perturbing a surface
     Methods,
     /// List the built-in scenes

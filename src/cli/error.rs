@@ -45,6 +45,9 @@ pub(super) enum CliError {
     /// Something cannot be timed.
     #[error(transparent)]
     Bench(#[from] crate::measure::bench::BenchError),
+    /// Tests of the matrix of extremes fell short of their bars.
+    #[error("{0} of the tests fell short")]
+    FellShort(usize),
     /// A file of rays cannot be read or written.
     #[error(transparent)]
     Rays(#[from] crate::measure::bench::ray_file::RayFileError),

@@ -33,7 +33,9 @@ Examples:
   reliefscope probe scene.toml --pixel 320,180
       tells every step from one pixel's ray to its colour
   reliefscope bench --quick
-      times frames and rays on this machine";
+      times frames and rays on this machine
+  reliefscope stability
+      tests the program where numbers are extreme";
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -90,6 +92,41 @@ The table has four parts:
 A file of rays holds the triangles in the units in which they are traced (a model is centred and
 scaled by a power of two unless --no-normalize), and a place for each pixel whether it sends a ray
 or not. Holes of cut-out maps count as solid. docs/performance.md says more, and the format.";
+
+/// Behind `stability -h`.
+pub(super) const STABILITY_EXAMPLES: &str = "\
+Examples:
+  reliefscope stability
+  reliefscope stability --full --json > matrix.json
+  reliefscope stability watertight sphere --kernel moller-trumbore
+  reliefscope stability contact --offset-rule fixed";
+
+const STABILITY: &str = "\
+Each line is a test: `ok` or `SHORT`, its name, the figure, its bar, and how many rays or pixels
+it looked at. `--` marks figures that are reported without a bar. The exit code is 1 if any test
+falls short, 2 if it could not run.
+
+The families:
+  watertight  rays from inside closed meshes at edges and vertices: how many get out
+  borders     rays a few units in the last place beside borders: how many answers differ from f64
+  accuracy    distances, weights, points, texture coordinates, normals: the worst error
+  contact     rays leaving a convex body: how many it stops itself, and how far away they start
+  convex      pictures of a convex body: how many pixels shadows change
+  sweep       a camera that crosses one pixel: how much longer pixels travel in finer steps
+  methods     every method at every angle and amplitude: pixels without a colour, and steps
+  maps        maps of all sizes, depths and contents: pixels without a colour
+  shading     exponents, lamps in impossible places, mirrors face to face
+  faces       charts without area, normals without length, triangles without sense
+
+All vector instructions of the machine must give the same bits throughout. --kernel and
+--offset-rule replace the program's own by those of textbooks in `watertight`, `borders`,
+`accuracy` and `contact`, to show what they would do; pictures are always the program's own.
+docs/stability.md says more.";
+
+/// Behind `stability --help`.
+pub(super) fn stability_details() -> String {
+    format!("{STABILITY_EXAMPLES}\n\n{STABILITY}")
+}
 
 /// Behind `--help`: examples, methods, scenes, exit codes.
 pub(super) fn overview() -> String {

@@ -2,7 +2,7 @@
 //!
 //! - `args`: what may be typed, for the parser; `help`: what `--help` teaches
 //! - `options`: arguments after checking, as commands take them
-//! - `render`, `inspect`, `probe`, `lists`: one file per command; `bench`: a room; `input`: what they share
+//! - `render`, `inspect`, `probe`, `stability`, `lists`: one file per command; `bench`: a room; `input`: what they share
 
 mod args;
 mod bench;
@@ -16,6 +16,7 @@ mod output;
 mod probe;
 mod progress;
 mod render;
+mod stability;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -96,6 +97,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, windows: &dyn Windows)
             output::complain(&format!("error: {error}"));
             match error {
                 CliError::Bench(error) if error.is_wrong_answer() => ExitCode::from(FAILED),
+                CliError::FellShort(_) => ExitCode::from(FAILED),
                 _ => ExitCode::from(COULD_NOT_RUN),
             }
         }
@@ -125,6 +127,7 @@ fn dispatch(arguments: Arguments, windows: &dyn Windows) -> Result<(), CliError>
         Some(Command::Inspect(args)) => inspect::run(&args.check()),
         Some(Command::Probe(args)) => probe::run(&args.check()),
         Some(Command::Bench(args)) => bench::run(args, windows),
+        Some(Command::Stability(args)) => stability::run_matrix(&args),
         Some(Command::Methods) => lists::methods(),
         Some(Command::Scenes) => lists::scenes(),
     }

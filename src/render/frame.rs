@@ -243,7 +243,7 @@ fn frame_lights(snapshot: &Snapshot) -> Vec<FrameLight> {
                 let place = normalization.internal_from_world(position);
                 (
                     FrameLightKind::Point(place, falloff),
-                    emitted.map(|c| (f64::from(c) * factor) as f32),
+                    emitted.map(|c| (f64::from(c) * factor).min(f64::from(f32::MAX)) as f32),
                 )
             }
         };

@@ -1,6 +1,7 @@
 //! From a scene and settings to a picture.
 
 mod counters;
+mod crash;
 mod film;
 mod frame;
 mod material;
@@ -15,6 +16,7 @@ mod stages;
 mod tile;
 
 pub use counters::Counters;
+pub use crash::crashing_pixel;
 pub use film::Picture;
 pub use frame::Frame;
 pub use material::amplitude;

@@ -66,4 +66,17 @@ impl RawImage {
             _ => None,
         }
     }
+
+    /// Puts 0 in place of infinities and NaN in floats; returns how many there were.
+    pub fn make_finite(&mut self) -> usize {
+        let Samples::F32(samples) = &mut self.samples else {
+            return 0;
+        };
+        let mut replaced = 0;
+        for sample in samples.iter_mut().filter(|s| !s.is_finite()) {
+            *sample = 0.0;
+            replaced += 1;
+        }
+        replaced
+    }
 }

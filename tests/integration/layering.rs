@@ -20,6 +20,7 @@ const DOORS: [(&str, &[&str]); 13] = [
             "texture/cone_map",
             "render",
             "measure/bench",
+            "measure/stability",
         ],
     ),
     ("image", &["scene/load", "scene/save_picture"]),

@@ -8,6 +8,7 @@ mod built_in;
 mod bundles;
 mod bvh;
 mod cli;
+mod fuzz;
 mod golden;
 mod layering;
 mod load_large;
@@ -21,6 +22,7 @@ mod progressive;
 mod reference;
 mod scene_file;
 mod shapes;
+mod stability;
 mod support;
 #[cfg(feature = "viewer")]
 mod viewer;

@@ -2,8 +2,10 @@
 
 mod compare;
 mod controls;
+mod crash;
 mod driver;
 mod files;
 mod navigation;
 mod same_picture;
+mod wild;
 mod worker;

@@ -66,6 +66,10 @@ pub fn reflected_light(
     }
 }
 
+/// More light than this counts as this: what the largest floats make would be infinite, and infinity times
+/// nothing is no colour.
+const MOST_LIGHT: f32 = 1e30;
+
 /// Sets the shadow rays to one light.
 pub fn aim_at_light(
     frame: &Frame<'_>,
@@ -239,12 +243,24 @@ impl Kernel for AddLight<'_> {
                     let wi = get3(simd, &self.shadows.rays.dir, group);
                     falloff = falloff * softened_horizon(n_geo, n_shade, wi);
                 }
-                let sum = get_rgb(simd, &surfaces.reflected, group)
-                    + irradiance * falloff * response.sum();
+                let arriving = at_most(irradiance * falloff);
+                let sum =
+                    get_rgb(simd, &surfaces.reflected, group) + at_most(arriving * response.sum());
                 set_rgb(&mut surfaces.reflected, group, mask, sum);
             }
         }
         self.counters.power_calls += powers.count();
+    }
+}
+
+/// Each channel up to [`MOST_LIGHT`]; NaN stays, to be counted.
+#[inline(always)]
+fn at_most<F: Real>(LinearRgb { r, g, b }: LinearRgb<F>) -> LinearRgb<F> {
+    let most = r.splat(MOST_LIGHT);
+    LinearRgb {
+        r: most.smaller(r),
+        g: most.smaller(g),
+        b: most.smaller(b),
     }
 }
 

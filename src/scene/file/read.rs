@@ -1,5 +1,6 @@
 //! Opens a scene file: its text, its model, and what the one says about the other.
 
+use std::io::Read as _;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -10,6 +11,9 @@ use super::parse::parse;
 use super::paths::folder;
 use crate::scene::load::{LoadOptions, load_model};
 use crate::scene::{LoadError, LoadWarning, LoadedScene, SceneSource, built_in, built_in_names};
+
+/// No scene file is longer.
+const MAX_BYTES: u64 = 16 << 20;
 
 /// Reads a scene file with its model and pictures.
 ///
@@ -47,10 +51,21 @@ pub fn read_scene(path: &Path, options: &LoadOptions) -> Result<LoadedScene, Loa
 }
 
 fn read_text(path: &Path) -> Result<String, LoadError> {
-    let bytes = std::fs::read(path).map_err(|source| LoadError::Io {
+    let in_file = |source| LoadError::Io {
         path: path.to_owned(),
         source,
-    })?;
+    };
+    let file = std::fs::File::open(path).map_err(in_file)?;
+    let mut bytes = Vec::new();
+    let limited = &mut file.take(MAX_BYTES + 1);
+    limited.read_to_end(&mut bytes).map_err(in_file)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(LoadError::Invalid {
+            path: path.to_owned(),
+            line: None,
+            message: format!("more than {MAX_BYTES} bytes are too many for a scene file"),
+        });
+    }
     String::from_utf8(bytes).map_err(|error| {
         let good = error.utf8_error().valid_up_to();
         let line = 1 + error.as_bytes()[..good]

@@ -11,6 +11,8 @@ use crate::scene::LoadWarning;
 
 /// No library is longer: a larger file is something else.
 const MAX_BYTES: u64 = 256 << 20;
+/// No model names more libraries: each costs looks into folders.
+const MAX_LIBRARIES: usize = 1000;
 
 /// A material with the library it stands in.
 #[derive(Debug)]
@@ -35,6 +37,10 @@ pub(super) enum Match {
 pub(super) struct Definitions {
     list: Vec<Definition>,
     by_name: HashMap<Vec<u8>, usize>,
+    /// Without what may be a comment.
+    by_bare_name: HashMap<Vec<u8>, usize>,
+    /// The same in one letter case.
+    by_lower_name: HashMap<String, usize>,
 }
 
 impl Definitions {
@@ -43,6 +49,15 @@ impl Definitions {
         let mut definitions = Self::default();
         let mut seen: Vec<PathBuf> = Vec::new();
         for library in libraries {
+            if seen.len() >= MAX_LIBRARIES {
+                let message = format!("more than {MAX_LIBRARIES} libraries; the rest is not read");
+                warnings.push(LoadWarning {
+                    file: library.model.clone(),
+                    line: Some(library.line),
+                    message,
+                });
+                break;
+            }
             for path in files_of(library, warnings) {
                 let identity = path.canonicalize().unwrap_or_else(|_| path.clone());
                 if !seen.contains(&identity) {
@@ -59,20 +74,15 @@ impl Definitions {
         if let Some(&i) = self.by_name.get(name) {
             return Some((&self.list[i], Match::Exact));
         }
-        let first = |is_same: &dyn Fn(&[u8]) -> bool| {
-            self.list
-                .iter()
-                .find(|d| is_same(without_comment(&d.material.name)))
-        };
         let bare = without_comment(name);
         if bare.is_empty() {
             return None;
         }
-        if let Some(definition) = first(&|n| n == bare) {
-            return Some((definition, Match::Exact));
+        if let Some(&i) = self.by_bare_name.get(bare) {
+            return Some((&self.list[i], Match::Exact));
         }
-        let lower = text_from_bytes(bare).to_lowercase();
-        first(&|n| text_from_bytes(n).to_lowercase() == lower).map(|d| (d, Match::OtherCase))
+        let &i = self.by_lower_name.get(&lower(bare))?;
+        Some((&self.list[i], Match::OtherCase))
     }
 
     fn add_file(&mut self, path: &Path, warnings: &mut Vec<LoadWarning>) {
@@ -104,13 +114,23 @@ impl Definitions {
                 }
                 continue;
             }
-            self.by_name.insert(material.name.clone(), self.list.len());
+            let index = self.list.len();
+            self.by_name.insert(material.name.clone(), index);
+            // The first of several counts.
+            let bare = without_comment(&material.name);
+            self.by_lower_name.entry(lower(bare)).or_insert(index);
+            self.by_bare_name.entry(bare.to_vec()).or_insert(index);
             self.list.push(Definition {
                 material,
                 library: path.to_path_buf(),
             });
         }
     }
+}
+
+/// A name in the one letter case by which names are compared that differ in it.
+fn lower(name: &[u8]) -> String {
+    text_from_bytes(name).to_lowercase()
 }
 
 fn read_limited(path: &Path) -> Result<Vec<u8>, String> {
@@ -140,7 +160,7 @@ fn files_of(library: &LibraryRef, warnings: &mut Vec<LoadWarning>) -> Vec<PathBu
         return vec![found.path];
     }
     let mut files = Vec::new();
-    for name in several_names(whole) {
+    for name in several_names(whole).into_iter().take(MAX_LIBRARIES) {
         let shown = text_from_bytes(name);
         match find_file(name, &[folder]) {
             Some(Found { path, fallback }) => {

@@ -43,6 +43,13 @@ const DEFAULT_NAME: &str = "default";
 const DEFAULT_KD: LinearRgb = LinearRgb::gray(0.8);
 /// Largest Phong exponent: beyond it a highlight is narrower than single precision can tell.
 const MAX_SHININESS: f32 = 1e7;
+/// Colours beyond this are something else than colours; light times them must stay finite.
+const MAX_COLOR: f32 = 1e6;
+
+/// A colour's number as far as one is believed.
+fn within(channel: f32) -> f32 {
+    channel.clamp(-MAX_COLOR, MAX_COLOR)
+}
 
 /// Reads the libraries and finds a material for every used name (bytes as written in `usemtl`, with the
 /// line of its first use; line 0 for faces before any `usemtl`, which get the default without a warning).
@@ -175,12 +182,14 @@ impl Loader<'_> {
                 self.warn(library, mtl.line, message);
                 LinearRgb::WHITE
             }
-            Some(kd) => LinearRgb::from(kd).map(linear_from_srgb),
+            Some(kd) => LinearRgb::from(kd).map(within).map(linear_from_srgb),
             None if has_albedo => LinearRgb::WHITE,
             None => DEFAULT_KD,
         };
         let mut material = Material::matte("", kd);
-        let ks = mtl.ks.map_or(LinearRgb::BLACK, LinearRgb::from);
+        let ks = mtl
+            .ks
+            .map_or(LinearRgb::BLACK, |ks| LinearRgb::from(ks).map(within));
         match mtl.illum {
             Some(0 | 1) => {}
             None | Some(2 | 10) => material.ks = ks,

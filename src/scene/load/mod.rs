@@ -42,6 +42,9 @@ mod recognise;
 mod slots;
 mod staging;
 
+/// Bytes of a material's name; what is longer is cut, so that no message quotes a whole file.
+const MAX_NAME: usize = 1024;
+
 pub use amplitude::fill_default_amplitudes;
 pub use materials::{LibraryRef, MaterialSet, load_materials};
 pub use model::load_model;

@@ -1,7 +1,7 @@
 //! From an OBJ file to a scene with settings to start from.
 
 use std::fs::File;
-use std::io::{ErrorKind, Read};
+use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -18,6 +18,10 @@ use crate::scene::{
     DisplaySettings, LoadError, LoadWarning, LoadedScene, ModelFacts, Scene, SceneSource,
 };
 
+/// No model's text is longer. Read, parsed and assembled it would take four times as much memory.
+const MAX_BYTES: u64 = 16 << 30;
+/// Nor longer than this where the length is not known beforehand.
+const MAX_STREAM_BYTES: u64 = 1 << 30;
 /// Bytes read between two looks at the monitor.
 const READ_BYTES: u64 = 4 << 20;
 
@@ -84,7 +88,20 @@ fn read(path: &Path, monitor: &LoadMonitor) -> Result<Vec<u8>, LoadError> {
     };
     let mut file = File::open(path).map_err(in_file)?;
     // What is no plain file has no size to speak of, and is read all the same.
-    let size = file.metadata().map_err(in_file)?.len();
+    let facts = file.metadata().map_err(in_file)?;
+    let size = facts.len();
+    let most = if facts.is_file() {
+        MAX_BYTES
+    } else {
+        MAX_STREAM_BYTES
+    };
+    let too_long = |bytes: u64| {
+        let message = format!("{bytes} bytes of text; at most {most} are read");
+        (bytes > most).then(|| in_file(io::Error::new(ErrorKind::FileTooLarge, message)))
+    };
+    if let Some(error) = too_long(size) {
+        return Err(error);
+    }
     let mut text = Vec::new();
     text.try_reserve_exact(size as usize)
         .map_err(|_| in_file(ErrorKind::OutOfMemory.into()))?;
@@ -93,6 +110,9 @@ fn read(path: &Path, monitor: &LoadMonitor) -> Result<Vec<u8>, LoadError> {
         let part = file.by_ref().take(READ_BYTES).read_to_end(&mut text);
         if part.map_err(in_file)? == 0 {
             return Ok(text);
+        }
+        if let Some(error) = too_long(text.len() as u64) {
+            return Err(error);
         }
     }
 }

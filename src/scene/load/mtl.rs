@@ -3,6 +3,10 @@
 //! Follows the MTL format of 1995 (Wavefront, *Advanced Visualizer*, appendix B1) and what exporters
 //! made of it since. Bytes, not text: old files hold names in any encoding.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+use super::MAX_NAME;
 use super::lookup::text_from_bytes;
 use super::map_statement::{MapKind, MapStatement, parse_map};
 
@@ -81,6 +85,8 @@ struct Unused {
 #[derive(Default)]
 struct Parser {
     materials: Vec<MtlMaterial>,
+    /// Where each name was defined first.
+    lines: HashMap<Vec<u8>, usize>,
     notes: Vec<Note>,
     unused: Vec<Unused>,
     orphans: Option<(usize, usize)>,
@@ -108,13 +114,19 @@ impl Parser {
         if name.is_empty() {
             self.note(line, "newmtl without a name".to_owned());
         }
-        if let Some(first) = self.materials.iter().find(|m| m.name == name) {
-            let message = format!(
-                "material \"{}\" is defined again; the definition in line {} counts",
-                text_from_bytes(name),
-                first.line
-            );
-            self.note(line, message);
+        let name = &name[..name.len().min(MAX_NAME)];
+        match self.lines.entry(name.to_vec()) {
+            Entry::Vacant(entry) => {
+                entry.insert(line);
+            }
+            Entry::Occupied(first) => {
+                let message = format!(
+                    "material \"{}\" is defined again; the definition in line {} counts",
+                    text_from_bytes(name),
+                    first.get()
+                );
+                self.note(line, message);
+            }
         }
         self.materials.push(MtlMaterial {
             name: name.to_vec(),

@@ -21,6 +21,9 @@ pub struct PictureLimits {
     pub max_bytes: u64,
 }
 
+/// What a file may hold beside twice its samples: headers, colour profiles.
+const SPARE_BYTES: u64 = 1 << 20;
+
 impl Default for PictureLimits {
     /// 16384² pixels, 2 GiB: enough for four channels of 16 bits at full size.
     fn default() -> Self {
@@ -68,6 +71,20 @@ pub fn decode_picture(path: &Path, limits: &PictureLimits) -> Result<DecodedPict
 
 fn decode(path: &Path, limits: &PictureLimits) -> Result<DecodedPicture, PictureError> {
     let io = |e: std::io::Error| PictureError::new(&e);
+    // Asked before it is opened: opening a pipe would wait for whoever writes to it.
+    let facts = std::fs::metadata(path).map_err(io)?;
+    if !facts.is_file() {
+        return Err(PictureError::new(&"not a plain file"));
+    }
+    // Decoders may hold all of it beside the samples.
+    let most = limits
+        .max_bytes
+        .saturating_mul(2)
+        .saturating_add(SPARE_BYTES);
+    if facts.len() > most {
+        let message = format!("a file of {} bytes; at most {most} are read", facts.len());
+        return Err(PictureError(message));
+    }
     let mut file = BufReader::new(File::open(path).map_err(io)?);
     let Some(format) = format_of(&mut file, path).map_err(io)? else {
         return Err(PictureError::new(&"not a picture of a known format"));
@@ -83,10 +100,7 @@ fn decode(path: &Path, limits: &PictureLimits) -> Result<DecodedPicture, Picture
     };
     // If neither can read it, the general decoder knows best why.
     let mut image = grey.or_else(|_| general.map(|decoded| decoded.image))?;
-    let mut replaced = 0;
-    if let Samples::F32(samples) = &mut image.samples {
-        replaced = make_finite(samples);
-    }
+    let replaced = image.make_finite();
     Ok(DecodedPicture { image, replaced })
 }
 
@@ -159,7 +173,7 @@ fn has_tga_footer<R: BufRead + Seek>(file: &mut R) -> std::io::Result<bool> {
 fn raw_samples(decoded: DynamicImage) -> DecodedPicture {
     let (width, height) = (decoded.width(), decoded.height());
     let mut channels = decoded.color().channel_count();
-    let mut samples = match decoded {
+    let samples = match decoded {
         DynamicImage::ImageLuma8(b) => Samples::U8(b.into_raw()),
         DynamicImage::ImageLumaA8(b) => Samples::U8(b.into_raw()),
         DynamicImage::ImageRgb8(b) => Samples::U8(b.into_raw()),
@@ -176,27 +190,14 @@ fn raw_samples(decoded: DynamicImage) -> DecodedPicture {
             Samples::F32(other.into_rgba32f().into_raw())
         }
     };
-    let replaced = match &mut samples {
-        Samples::F32(samples) => make_finite(samples),
-        _ => 0,
-    };
-    let image = RawImage {
+    let mut image = RawImage {
         width,
         height,
         channels,
         samples,
     };
+    let replaced = image.make_finite();
     DecodedPicture { image, replaced }
-}
-
-/// Puts 0 in place of infinities and NaN; returns how many there were.
-fn make_finite(samples: &mut [f32]) -> usize {
-    let mut replaced = 0;
-    for sample in samples.iter_mut().filter(|s| !s.is_finite()) {
-        *sample = 0.0;
-        replaced += 1;
-    }
-    replaced
 }
 
 /// Pictures of one scene: each file is decoded once, however many slots use it.

@@ -2,6 +2,8 @@
 
 mod stitch;
 
+use std::collections::HashSet;
+
 use earcut::Earcut;
 use glam::DVec3;
 
@@ -9,6 +11,9 @@ use stitch::restore_left_out;
 
 /// Corners beyond which ear clipping's 32-bit bookkeeping would not fit.
 const MAX_CORNERS: usize = 10_000_000;
+
+/// A polygon with more corners than this is looked at for corners that come again and again.
+const MANY_CORNERS: usize = 64;
 
 /// A sine below which two edges in a row count as one straight line when a polygon is tested for being
 /// convex; such polygons go through ear clipping, which knows what to do with straight corners.
@@ -71,6 +76,10 @@ impl Triangulator {
             // What is not finite is dropped later and noted there.
             return !finite || corners.iter().all(|p| *p == corners[0]);
         }
+        if winds(corners) {
+            self.fan(corners.len());
+            return false;
+        }
         self.flatten(corners, area_vector);
         if is_convex(&self.flat) {
             self.fan(corners.len());
@@ -131,6 +140,19 @@ impl Triangulator {
         let polygon: f64 = (2..corners).map(|i| area2(&self.flat, [0, i - 1, i])).sum();
         (sum - polygon).abs() <= 1e-6 * polygon.abs()
     }
+}
+
+/// Whether the outline comes back to its places more than twice on average, as no outline with holes does.
+/// Ear clipping would look for diagonals of such a tangle with the cube of its corners.
+fn winds(corners: &[DVec3]) -> bool {
+    if corners.len() <= MANY_CORNERS {
+        return false;
+    }
+    let places: HashSet<_> = corners
+        .iter()
+        .map(|p| p.to_array().map(f64::to_bits))
+        .collect();
+    corners.len() > 2 * places.len()
 }
 
 /// Normal times area of a polygon. Relative to its first corner, so that distance from the origin costs

@@ -16,7 +16,8 @@ use super::{
     FirstPass, Frame, FrameStats, PassRenderer, Refinement, RenderNote, RenderRequest,
     RendererFactory, Shared, lock,
 };
-use crate::render::{PassEnd, Snapshot};
+use crate::render::{PassEnd, Snapshot, crashing_pixel};
+use crate::scene::SceneSource;
 use crate::scene::save_picture::{SaveError, write_exr, write_png};
 
 /// A stride becomes finer only when the finer pass is expected to fit with this margin, so that the
@@ -194,7 +195,8 @@ impl Coordinator {
             Err(panic) => {
                 // Its state is not to be trusted any more.
                 self.renderer = None;
-                format!("Rendering failed{}: {}", self.story(), panic_text(&*panic))
+                let (story, text) = (self.story(), panic_text(&*panic));
+                format!("Rendering failed{story}: {text}{}", self.culprit())
             }
         };
         if let Some(job) = &mut self.job {
@@ -214,6 +216,14 @@ impl Coordinator {
             let method = settings.mapping.method.name();
             let (name, passes) = (&scene.name, self.passes);
             format!(" ({name} at {w}x{h}, method {method}, after {passes} passes)")
+        })
+    }
+
+    /// The pixel that a panic came from and how to see it again, if it can be.
+    fn culprit(&self) -> String {
+        let snapshot = self.job.as_ref().map(|job| &job.request.snapshot);
+        snapshot.map_or_else(String::new, |snapshot| {
+            crashing_pixel(snapshot).map_or_else(String::new, |pixel| replay(snapshot, pixel))
         })
     }
 
@@ -417,6 +427,19 @@ fn write_picture(
     renderer.encode_shown_into(exposure_ev, &mut rgba);
     let rgb: Vec<_> = rgba.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
     write_png(path, size, &rgb)
+}
+
+/// The command that tells the story of a pixel: as long as the scene was not edited, that very pixel's.
+fn replay(snapshot: &Snapshot, [x, y]: [u32; 2]) -> String {
+    let input = match &snapshot.scene.source {
+        SceneSource::BuiltIn(name) => name.clone(),
+        SceneSource::Model(path) | SceneSource::SceneFile(path) => path.display().to_string(),
+    };
+    let [width, height] = snapshot.size;
+    let method = snapshot.settings.mapping.method.name();
+    format!(
+        "; pixel {x},{y}; replay: reliefscope probe '{input}' --size {width}x{height} --method {method} --pixel {x},{y}"
+    )
 }
 
 /// What a panic said.

@@ -13,7 +13,7 @@ use super::number::{float, integer};
 use super::part::{Part, PartSpan, UsedMaterial, too_many_vertices};
 use super::{Corner, Face, NONE, Smoothing};
 use crate::scene::LoadError;
-use crate::scene::load::LibraryRef;
+use crate::scene::load::{LibraryRef, MAX_NAME};
 
 /// The first word of a face with a bad index of each kind.
 #[derive(Default)]
@@ -68,7 +68,8 @@ impl<'a> Parser<'a> {
             b"f" | b"fo" => self.face(line, rest)?,
             b"s" => self.smoothing(line, rest),
             b"usemtl" => {
-                self.part.usemtl = Some((rest.to_vec(), line));
+                let name = &rest[..rest.len().min(MAX_NAME)];
+                self.part.usemtl = Some((name.to_vec(), line));
                 self.material = None;
             }
             b"mtllib" => self.part.libraries.push(LibraryRef {
