@@ -2,7 +2,7 @@
 //!
 //! - `args`: what may be typed, for the parser; `help`: what `--help` teaches
 //! - `options`: arguments after checking, as commands take them
-//! - `render`, `inspect`, `probe`, `lists`: one file per command; `bench`: a room; `input`: what they share
+//! - `render`, `inspect`, `probe`, `lists`: one file per command; `bench`, `measure`: rooms; `input`: what they share
 
 mod args;
 mod bench;
@@ -11,6 +11,7 @@ mod help;
 mod input;
 mod inspect;
 mod lists;
+mod measure;
 mod options;
 mod output;
 mod probe;
@@ -125,6 +126,7 @@ fn dispatch(arguments: Arguments, windows: &dyn Windows) -> Result<(), CliError>
         Some(Command::Inspect(args)) => inspect::run(&args.check()),
         Some(Command::Probe(args)) => probe::run(&args.check()),
         Some(Command::Bench(args)) => bench::run(args, windows),
+        Some(Command::Measure(args)) => measure::run(args),
         Some(Command::Methods) => lists::methods(),
         Some(Command::Scenes) => lists::scenes(),
     }

@@ -8,6 +8,7 @@ mod built_in;
 mod bundles;
 mod bvh;
 mod cli;
+mod cli_measure;
 mod golden;
 mod layering;
 mod load_large;
@@ -22,5 +23,6 @@ mod reference;
 mod scene_file;
 mod shapes;
 mod support;
+mod trade;
 #[cfg(feature = "viewer")]
 mod viewer;

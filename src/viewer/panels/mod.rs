@@ -10,6 +10,7 @@ mod method;
 mod render;
 mod scene;
 mod shading;
+mod trade;
 
 use std::path::PathBuf;
 
@@ -45,6 +46,8 @@ pub struct UiState {
     pub paused: bool,
     /// Worker threads asked for, 0 for one per core.
     pub threads: usize,
+    /// What accuracy costs here.
+    pub trade: crate::viewer::trade::TradeMeter,
     /// The pixel's story on show.
     pub story: Option<crate::viewer::story::Story>,
 }
@@ -163,9 +166,10 @@ fn is_on(panel: &PanelContext<'_>, command: Command) -> bool {
 
 fn sections_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
     type Section = (&'static str, bool, fn(&mut Ui, &mut PanelContext<'_>));
-    const SECTIONS: [Section; 8] = [
+    const SECTIONS: [Section; 9] = [
         ("Method", true, method::method_ui),
         ("Compare", false, compare::compare_ui),
+        ("Trade", false, trade::trade_ui),
         ("Scene", true, scene::scene_ui),
         ("Lights", false, lights::lights_ui),
         ("Materials", false, materials::materials_ui),
