@@ -6,4 +6,5 @@ mod driver;
 mod files;
 mod navigation;
 mod same_picture;
+mod trade;
 mod worker;

@@ -330,9 +330,9 @@ fn pictures(html: &mut String, record: &Record) {
 
 /// Everything, for programs and for the curious.
 fn all_cells(html: &mut String, record: &Record) {
-    let _ = write!(
+    let _ = writeln!(
         html,
-        "<h2>Every figure</h2><details><summary>{} cells as comma-separated values</summary><pre>{}</pre></details>\n",
+        "<h2>Every figure</h2><details><summary>{} cells as comma-separated values</summary><pre>{}</pre></details>",
         record.cells.len(),
         escaped(&csv_table(record))
     );
@@ -387,6 +387,13 @@ impl Record {
                 self.cells.len()
             ));
         }
+        let few = |v: &&super::ViewFacts| v.rays < self.plan.rays as usize / FEW;
+        notes.extend(self.views.iter().filter(few).map(|view| {
+            format!(
+                "At {:.0}° only {} of {} view rays show a relief from its front.",
+                view.angle_deg, view.rays, self.plan.rays
+            )
+        }));
         notes.extend(
             self.left_out
                 .iter()

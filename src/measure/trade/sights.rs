@@ -64,7 +64,6 @@ impl<'a> Pinhole<'a> {
     }
 
     /// `None` if the ray leaves the scene; `Some(None)` if it hits something without a relief.
-    #[expect(clippy::option_option, reason = "two ways of seeing no relief")]
     fn look(&self, [x, y]: [f32; 2]) -> Option<Option<Sight>> {
         let frame = self.frame;
         let ray = Ray {
