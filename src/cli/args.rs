@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand};
 
 use super::bench::BenchArgs;
 use super::help;
+use super::measure::MeasureArgs;
 use super::stability::StabilityArgs;
 use crate::scene::file::check_size;
 use crate::surface::mapping::Method;
@@ -54,6 +55,9 @@ pub(super) enum Command {
     /// Test the program where numbers are very large, very small or very slanted
     #[command(after_help = help::STABILITY_EXAMPLES, after_long_help = help::stability_details())]
     Stability(StabilityArgs),
+    /// Measure what accuracy costs: every method on a model, from many angles, against the truth
+    #[command(after_help = help::MEASURE_EXAMPLES, after_long_help = help::measure_details())]
+    Measure(MeasureArgs),
     /// List the ways of perturbing a surface
     Methods,
     /// List the built-in scenes
@@ -153,11 +157,11 @@ pub(super) struct ProbeArgs {
     pub json: bool,
 }
 
-fn threads_parser() -> clap::builder::RangedI64ValueParser<u16> {
+pub(super) fn threads_parser() -> clap::builder::RangedI64ValueParser<u16> {
     clap::value_parser!(u16).range(0..=MAX_THREADS)
 }
 
-fn method_parser() -> impl TypedValueParser<Value = Method> {
+pub(super) fn method_parser() -> impl TypedValueParser<Value = Method> {
     PossibleValuesParser::new(Method::ALL.map(Method::name))
         .try_map(|name| Method::from_name(&name).ok_or("no such method"))
 }

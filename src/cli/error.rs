@@ -62,6 +62,31 @@ pub(super) enum CliError {
         /// What it lacks.
         message: String,
     },
+    /// Nothing can be measured, or not on so many threads.
+    #[error("{}: {source}", path.display())]
+    Trade {
+        /// What was to be measured.
+        path: PathBuf,
+        /// Why not.
+        source: crate::measure::trade::TradeError,
+    },
+    /// A record that is not one.
+    #[error("{}: {message}", path.display())]
+    Record {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        message: String,
+    },
+    /// Records that do not make one.
+    #[error("--merge: {0}")]
+    Merge(#[from] crate::measure::trade::MergeError),
+    /// Cells are missing; what there is has been written.
+    #[error("{0}")]
+    Partial(String),
+    /// Ctrl-C cannot be listened to.
+    #[error("cannot listen for Ctrl-C: {0}")]
+    Interrupt(#[from] ctrlc::Error),
     /// Arguments that do not go together, beyond what the parser sees.
     #[error("{0}")]
     Arguments(&'static str),

@@ -2,7 +2,8 @@
 //!
 //! - `args`: what may be typed, for the parser; `help`: what `--help` teaches
 //! - `options`: arguments after checking, as commands take them
-//! - `render`, `inspect`, `probe`, `stability`, `lists`: one file per command; `bench`: a room; `input`: what they share
+//! - `render`, `inspect`, `probe`, `stability`, `lists`: one file per command; `bench`, `measure`: rooms; `input`:
+//!   what they share
 
 mod args;
 mod bench;
@@ -11,6 +12,7 @@ mod help;
 mod input;
 mod inspect;
 mod lists;
+mod measure;
 mod options;
 mod output;
 mod probe;
@@ -128,6 +130,7 @@ fn dispatch(arguments: Arguments, windows: &dyn Windows) -> Result<(), CliError>
         Some(Command::Probe(args)) => probe::run(&args.check()),
         Some(Command::Bench(args)) => bench::run(args, windows),
         Some(Command::Stability(args)) => stability::run_matrix(&args),
+        Some(Command::Measure(args)) => measure::run(args),
         Some(Command::Methods) => lists::methods(),
         Some(Command::Scenes) => lists::scenes(),
     }

@@ -1,25 +1,26 @@
-//! The progress bar of commands that take their time, on a terminal only.
+//! The progress bar of `render` and `measure`, on a terminal only.
 
 use std::io::IsTerminal as _;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// A bar that counts; silent where standard error is no terminal.
+/// A bar that counts what is done; silent where standard error is no terminal.
 pub(super) struct Progress(ProgressBar);
 
 impl Progress {
-    /// A bar from 0 to `samples`.
+    /// A bar from 0 to so many samples per pixel.
     pub fn new(samples: u32) -> Self {
-        Self::of(u64::from(samples), "samples")
+        Self::counting(u64::from(samples), "samples")
     }
 
-    /// A bar from 0 to `count` of something.
-    pub fn of(count: u64, what: &str) -> Self {
+    /// A bar from 0 to `count` of whatever `things` says.
+    pub fn counting(count: u64, things: &str) -> Self {
         if !std::io::stderr().is_terminal() {
             return Self(ProgressBar::hidden());
         }
         let bar = ProgressBar::with_draw_target(Some(count), ProgressDrawTarget::stderr());
-        let style = format!("{{wide_bar}} {{pos}}/{{len}} {what}, {{elapsed}} gone, {{eta}} to go");
+        let style =
+            format!("{{wide_bar}} {{pos}}/{{len}} {things}, {{elapsed}} gone, {{eta}} to go");
         // A bad template is a bug that shows at once; the plain style will do instead of a panic.
         bar.set_style(
             ProgressStyle::with_template(&style).unwrap_or_else(|_| ProgressStyle::default_bar()),
@@ -28,9 +29,14 @@ impl Progress {
         Self(bar)
     }
 
-    /// Every pixel now has this many samples.
-    pub fn reached(&self, samples: u32) {
-        self.0.set_position(u64::from(samples));
+    /// This many are done.
+    pub fn reached(&self, count: u64) {
+        self.0.set_position(count);
+    }
+
+    /// There are this many.
+    pub fn of(&self, count: u64) {
+        self.0.set_length(count);
     }
 
     /// Does something while the bar is out of the way, such as writing a line.

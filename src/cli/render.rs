@@ -44,7 +44,7 @@ fn converge(renderer: &mut Progressive, snapshot: Snapshot) -> Counters {
         if renderer.pass(&|| false) == PassEnd::Stopped {
             break;
         }
-        progress.reached(renderer.samples());
+        progress.reached(u64::from(renderer.samples()));
     }
     progress.finish();
     renderer.counters()

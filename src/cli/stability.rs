@@ -75,7 +75,7 @@ pub(super) fn run_matrix(args: &StabilityArgs) -> Result<(), CliError> {
     if !args.json {
         output::answer(&heading(&plan, all.len()))?;
     }
-    let progress = Progress::of(all.len() as u64, "tests");
+    let progress = Progress::counting(all.len() as u64, "tests");
     let (mut done, mut told) = (0, Ok(()));
     let tell = |outcome: &Outcome| {
         done += 1;

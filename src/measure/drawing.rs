@@ -52,6 +52,8 @@ pub enum Shape {
 pub enum Anchor {
     /// Its start.
     Start,
+    /// Its middle.
+    Middle,
     /// Its end.
     End,
 }
@@ -131,6 +133,7 @@ fn element(shape: &Shape) -> String {
         } => {
             let anchor = match anchor {
                 Anchor::Start => "start",
+                Anchor::Middle => "middle",
                 Anchor::End => "end",
             };
             format!(

@@ -1,5 +1,5 @@
 //! How far a picture or a number is from the truth, and how long it took: the report's equations, distances
-//! of pictures, benchmarks, the matrix of extremes, and how a window feels.
+//! of pictures, what accuracy costs, benchmarks, the matrix of extremes, and how a window feels.
 
 pub mod bench;
 pub mod drawing;
@@ -12,5 +12,6 @@ pub mod profile_drawing;
 pub mod report_equations;
 pub mod stability;
 pub mod stage_clock;
+pub mod trade;
 
 pub use picture::{picture_from_image, read_picture};

@@ -18,7 +18,7 @@ mod tile;
 pub use counters::Counters;
 pub use crash::crashing_pixel;
 pub use film::Picture;
-pub use frame::Frame;
+pub use frame::{Frame, FrameLight, FrameLightKind};
 pub use material::amplitude;
 pub use probe::{BounceStory, HitStory, LightStory, PixelStory, Visibility, probe};
 pub use profile::{LightProfile, MethodProfile, NoProfile, ReliefProfile, profile};

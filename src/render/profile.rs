@@ -145,7 +145,12 @@ pub fn profile(snapshot: &Snapshot, pixel: [u32; 2]) -> Result<ReliefProfile, No
         s
     };
     let chosen = snapshot.settings.mapping.method;
-    let shown = |method: &Method| *method != Method::RelaxedCone || chosen == *method;
+    // Displacement has no place on this ray but the truth itself.
+    let shown = |method: &Method| match method {
+        Method::Displacement => false,
+        Method::RelaxedCone => chosen == *method,
+        _ => true,
+    };
     let methods = Method::ALL
         .into_iter()
         .filter(shown)

@@ -39,6 +39,17 @@ pub fn write_png(path: &Path, size: [u32; 2], pixels: &[[u8; 3]]) -> Result<(), 
     write(path, &DynamicImage::ImageRgb8(picture), ImageFormat::Png)
 }
 
+/// The bytes of an 8-bit RGB PNG, to put it into another file; `None` if the count of pixels does not fit `size`.
+#[must_use]
+pub fn png_bytes(size: [u32; 2], pixels: &[[u8; 3]]) -> Option<Vec<u8>> {
+    let fits = u64::from(size[0]) * u64::from(size[1]) == pixels.len() as u64;
+    let samples = pixels.as_flattened().to_vec();
+    let picture = ImageBuffer::from_raw(size[0], size[1], samples).filter(|_| fits)?;
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let written = DynamicImage::ImageRgb8(picture).write_to(&mut bytes, ImageFormat::Png);
+    written.ok().map(|()| bytes.into_inner())
+}
+
 /// Writes a 32-bit float RGB OpenEXR file. `pixels` are linear, `size` is columns and rows, row 0 is on top.
 ///
 /// # Errors

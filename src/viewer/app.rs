@@ -482,6 +482,7 @@ impl ViewerApp {
             };
             panels::panel_ui(ctx, window, status::HEIGHT, &mut panel);
         }
+        self.state.trade.end_frame();
         for action in actions {
             self.act(ctx, action);
         }

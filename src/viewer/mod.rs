@@ -8,6 +8,7 @@
 //! - `viewport`, `picking`, `light_markers`: the mouse in the picture
 //! - `comparison`, `compare_view`, `false_color`: two methods in one view, and how far they are apart
 //! - `panels`, `status`, `windows`, `toasts`, `widgets`, `color_edit`, `theme`: what is drawn over it
+//! - `trade`: what accuracy costs, measured on a thread of its own
 //! - `commands`: the table behind keys, menu and help
 //!
 //! Settings travel back by cost: panels edit three plain structs in place (display, render, source), and
@@ -34,6 +35,7 @@ pub mod status;
 pub mod story;
 mod theme;
 mod toasts;
+pub mod trade;
 mod viewport;
 mod widgets;
 mod windows;

@@ -113,6 +113,7 @@ fn drawing_ui(ui: &mut Ui, drawing: &Drawing) {
             } => {
                 let align = match anchor {
                     Anchor::Start => Align2::LEFT_BOTTOM,
+                    Anchor::Middle => Align2::CENTER_BOTTOM,
                     Anchor::End => Align2::RIGHT_BOTTOM,
                 };
                 let font = FontId::proportional(*size);

@@ -25,7 +25,7 @@ size = [24, 16]
 samples = 2
 "#;
 
-fn run(folder: &Folder, arguments: &[&str]) -> Output {
+pub fn run(folder: &Folder, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_reliefscope"))
         .args(arguments)
         .current_dir(folder.path(""))
@@ -34,7 +34,7 @@ fn run(folder: &Folder, arguments: &[&str]) -> Output {
         .expect("the program starts")
 }
 
-fn stdout(output: &Output) -> String {
+pub fn stdout(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).expect("UTF-8")
 }
 
@@ -43,7 +43,7 @@ fn stderr(output: &Output) -> String {
 }
 
 /// Standard output of a run that must be good.
-fn good(folder: &Folder, arguments: &[&str]) -> String {
+pub fn good(folder: &Folder, arguments: &[&str]) -> String {
     let output = run(folder, arguments);
     let (code, errors) = (output.status.code(), stderr(&output));
     assert_eq!(code, Some(0), "{arguments:?}: {errors}");
@@ -51,7 +51,7 @@ fn good(folder: &Folder, arguments: &[&str]) -> String {
 }
 
 /// Standard error of a run that cannot be good: nothing on standard output, exit code 2.
-fn refused(folder: &Folder, arguments: &[&str]) -> String {
+pub fn refused(folder: &Folder, arguments: &[&str]) -> String {
     let output = run(folder, arguments);
     assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     assert_eq!(stdout(&output), "", "{arguments:?}");
@@ -94,7 +94,7 @@ fn help_teaches() {
         assert!(text.contains(word), "{word}");
     }
     for command in [
-        "view", "render", "inspect", "probe", "bench", "methods", "scenes",
+        "view", "render", "inspect", "probe", "bench", "measure", "methods", "scenes",
     ] {
         assert!(good(&folder, &[command, "--help"]).contains("Usage:"));
     }

@@ -10,7 +10,7 @@ const ROOMS: [&str; 10] = [
 ];
 
 /// Outside crates that have a door, and where under `src` it is.
-const DOORS: [(&str, &[&str]); 13] = [
+const DOORS: [(&str, &[&str]); 17] = [
     ("fearless_simd", &["math/simd"]),
     (
         "rayon",
@@ -31,7 +31,11 @@ const DOORS: [(&str, &[&str]); 13] = [
     ("serde_json", &["cli"]),
     ("clap", &["cli"]),
     ("indicatif", &["cli"]),
+    ("ctrlc", &["cli"]),
+    ("csv", &["measure/trade"]),
+    ("base64", &["measure/trade"]),
     ("egui", &["viewer"]),
+    ("egui_plot", &["viewer"]),
     ("eframe", &["viewer"]),
     ("rfd", &["viewer"]),
 ];

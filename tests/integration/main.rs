@@ -8,6 +8,7 @@ mod built_in;
 mod bundles;
 mod bvh;
 mod cli;
+mod cli_measure;
 mod fuzz;
 mod golden;
 mod layering;
@@ -24,5 +25,6 @@ mod scene_file;
 mod shapes;
 mod stability;
 mod support;
+mod trade;
 #[cfg(feature = "viewer")]
 mod viewer;

@@ -7,5 +7,6 @@ mod driver;
 mod files;
 mod navigation;
 mod same_picture;
+mod trade;
 mod wild;
 mod worker;

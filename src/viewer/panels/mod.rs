@@ -11,6 +11,7 @@ mod method;
 mod render;
 mod scene;
 mod shading;
+mod trade;
 
 use std::path::PathBuf;
 
@@ -48,6 +49,8 @@ pub struct UiState {
     pub threads: usize,
     /// What is known about the picture on show.
     pub stats: crate::viewer::worker::FrameStats,
+    /// What accuracy costs here.
+    pub trade: crate::viewer::trade::TradeMeter,
     /// The pixel's story on show.
     pub story: Option<crate::viewer::story::Story>,
 }
@@ -166,9 +169,10 @@ fn is_on(panel: &PanelContext<'_>, command: Command) -> bool {
 
 fn sections_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
     type Section = (&'static str, bool, fn(&mut Ui, &mut PanelContext<'_>));
-    const SECTIONS: [Section; 9] = [
+    const SECTIONS: [Section; 10] = [
         ("Method", true, method::method_ui),
         ("Compare", false, compare::compare_ui),
+        ("Trade", false, trade::trade_ui),
         ("Scene", true, scene::scene_ui),
         ("Lights", false, lights::lights_ui),
         ("Materials", false, materials::materials_ui),

@@ -1,0 +1,118 @@
+//! View rays, what they hit, and which of them show a relief.
+
+use super::facet::Facet;
+use super::truth::MIN_COS;
+use crate::geometry::Ray;
+use crate::geometry::triangle::Watertight;
+use crate::math::{V2, hash, unit_interval};
+use crate::render::Frame;
+use crate::surface::{SurfaceInteraction, SurfaceParts, surface_at, uv_at};
+
+/// A view ray that shows a relief from its front.
+#[derive(Debug, Clone, Copy)]
+pub struct Sight {
+    /// Index of the material.
+    pub material: usize,
+    /// The surface as the renderer has it, before any map changes it.
+    pub surface: SurfaceInteraction,
+    /// The same in double precision.
+    pub facet: Facet,
+}
+
+impl Sight {
+    /// Angle between the view and the smooth normal, degrees.
+    #[must_use]
+    pub fn angle_deg(&self) -> f64 {
+        self.facet.cos().clamp(-1.0, 1.0).acos().to_degrees()
+    }
+}
+
+/// View rays of one camera. The frame must have been made with the truth's settings.
+pub struct Pinhole<'a> {
+    frame: &'a Frame<'a>,
+}
+
+/// What the view rays of one view see.
+pub struct Sights {
+    /// Those that show a relief from its front.
+    pub relief: Vec<Sight>,
+    /// For each ray, whether it hits anything: the outline.
+    pub outline: Vec<bool>,
+}
+
+impl Sights {
+    /// Share of all rays that hit anything, 0…1.
+    #[must_use]
+    pub fn covered(&self) -> f64 {
+        let hits = self.outline.iter().filter(|hit| **hit).count();
+        hits as f64 / self.outline.len().max(1) as f64
+    }
+}
+
+impl<'a> Pinhole<'a> {
+    /// The camera of a frame.
+    #[must_use]
+    pub const fn of(frame: &'a Frame<'a>) -> Self {
+        Self { frame }
+    }
+
+    /// What the ray through a place of the picture (pixels from its top left corner) sees; `None` unless it is a
+    /// relief from its front.
+    #[must_use]
+    pub fn sight(&self, place: [f32; 2]) -> Option<Sight> {
+        self.look(place)?
+    }
+
+    /// `None` if the ray leaves the scene; `Some(None)` if it hits something without a relief.
+    fn look(&self, [x, y]: [f32; 2]) -> Option<Option<Sight>> {
+        let frame = self.frame;
+        let ray = Ray {
+            origin: frame.camera.origin,
+            dir: frame.camera.direction(x, y).into(),
+        };
+        let solid = |prim: u32, u: f32, v: f32| {
+            let attributes = frame.mesh.attributes[prim as usize];
+            let opacity = &frame.materials[usize::from(attributes.material)].opacity;
+            let uv = || V2::from(uv_at(frame.mesh, prim, u, v));
+            !attributes.has_uv || opacity.as_ref().is_none_or(|o| o.is_solid(uv()))
+        };
+        let hit = frame
+            .bvh
+            .intersect::<Watertight, _>(&ray, f32::INFINITY, &solid)?;
+        let attributes = frame.mesh.attributes[hit.prim as usize];
+        let material = usize::from(attributes.material);
+        if !attributes.has_uv || frame.materials[material].mapping.self_shadow().is_none() {
+            return Some(None);
+        }
+        let surface = surface_at(frame.mesh, &hit, &ray, SurfaceParts::Gradients);
+        let Some(facet) = Facet::on(frame.mesh, hit.prim, &ray) else {
+            return Some(None);
+        };
+        let has_chart = facet.gradients[0].cross(facet.gradients[1]).length() > 0.0;
+        let seen = facet.cos() > MIN_COS && has_chart && surface.handedness != 0.0;
+        Some(seen.then_some(Sight {
+            material,
+            surface,
+            facet,
+        }))
+    }
+
+    /// About `count` rays, one in each cell of a grid over the picture, at a place that `seed` decides.
+    #[must_use]
+    pub fn sights(&self, count: u32, seed: u32) -> Sights {
+        let [width, height] = self.frame.camera.half.map(|half| half * 2.0);
+        let columns = ((count as f32 * width / height).sqrt().round() as u32).max(1);
+        let rows = (count / columns).max(1);
+        let mut relief = Vec::new();
+        let mut outline = Vec::new();
+        for cell in 0..columns * rows {
+            let random = |k: u32| unit_interval(hash(hash(seed.wrapping_add(k)) ^ cell));
+            let x = ((cell % columns) as f32 + random(0)) / columns as f32 * width;
+            let y = ((cell / columns) as f32 + random(0x9e37_79b9)) / rows as f32 * height;
+            let seen = self.look([x, y]);
+            outline.push(seen.is_some());
+            relief.extend(seen.flatten());
+        }
+        Sights { relief, outline }
+    }
+}
