@@ -106,7 +106,7 @@ fn what_cannot_be_measured_is_refused() {
     let folder = Folder::new();
     folder.write("note.json", "{\"format\": 99}");
     folder.write("cut.json", "{\"format\": 1");
-    folder.write("flat.toml", "model = \"plane.obj\"\n");
+    folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     let cases: [(&[&str], &str); 11] = [
         (&["measure"], "INPUT"),
         (&["measure", "nowhere"], "nowhere"),
@@ -114,7 +114,7 @@ fn what_cannot_be_measured_is_refused() {
         (&["measure", "plane", "--angles", "90"], "0 to 89"),
         (&["measure", "plane", "--amplitudes", "0"], "above 0"),
         (&["measure", "plane", "--methods", "bumb"], "'bump'"),
-        (&["measure", "flat.toml", "--quick"], "relief"),
+        (&["measure", "flat.obj", "--quick"], "relief"),
         (&["measure", "plane", "--merge", "note.json"], "--merge"),
         (&["measure", "--merge", "lost.json"], "lost.json"),
         (&["measure", "--merge", "note.json"], "format 99"),
@@ -137,7 +137,16 @@ fn ctrl_c_leaves_a_valid_report() {
 
     let folder = Folder::new();
     // Would take hours.
-    let long = ["measure", "plane", "--samples", "4096", "--size", "800x600"];
+    let long = [
+        "measure",
+        "plane",
+        "--samples",
+        "4096",
+        "--size",
+        "800x600",
+        "--methods",
+        "none,exact",
+    ];
     let child = Command::new(env!("CARGO_BIN_EXE_reliefscope"))
         .args(long)
         .args(["--report", "out", "--threads", "1", "--json"])

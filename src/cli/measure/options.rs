@@ -12,7 +12,7 @@ use crate::measure::trade::{Plan, Shard};
 #[derive(Debug)]
 pub(super) enum MeasureOptions {
     /// Measure.
-    Sweep(SweepOptions),
+    Sweep(Box<SweepOptions>),
     /// Join what was measured.
     Merge(MergeOptions),
 }
@@ -74,7 +74,7 @@ impl MeasureArgs {
                 output,
             }));
         };
-        Ok(MeasureOptions::Sweep(SweepOptions {
+        Ok(MeasureOptions::Sweep(Box::new(SweepOptions {
             scene: SceneOptions {
                 input,
                 load: self.load.check(),
@@ -87,7 +87,7 @@ impl MeasureArgs {
             threads: usize::from(self.threads),
             command,
             output,
-        }))
+        })))
     }
 
     fn plan(&self) -> Plan {

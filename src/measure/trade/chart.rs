@@ -142,7 +142,7 @@ pub fn short(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 {
         "0".to_owned()
-    } else if size >= 9.995e4 || size < 9.995e-4 {
+    } else if !(9.995e-4..9.995e4).contains(&size) {
         format!("{value:.0e}")
     } else if size >= 99.95 {
         format!("{value:.0}")
