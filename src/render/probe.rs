@@ -352,7 +352,7 @@ fn light_story(
     let (wi, distance) = (arriving.wi, arriving.distance);
     let mut irradiance = light.irradiance * arriving.falloff;
     if frame.bent_normals == BentNormals::Softened {
-        irradiance = irradiance * softened_horizon(s.n_geo, s.n_shade, wi);
+        irradiance *= softened_horizon(s.n_geo, s.n_shade, wi);
     }
     let (cos_geo, cos_shade) = (s.n_geo.dot(wi), s.n_shade.dot(wi));
     let visibility = if !(cos_geo > 0.0 && cos_shade > 0.0) {

@@ -179,7 +179,10 @@ fn prism(
 /// The displacement of a scene that was asked for last, so that passes and settings that do not change it
 /// need not make it again.
 #[derive(Debug, Default)]
-pub struct DisplacementCell(Mutex<Option<(Vec<Option<FieldKey>>, bool, Arc<Displacement>)>>);
+pub struct DisplacementCell(Mutex<Option<(CellKey, Arc<Displacement>)>>);
+
+/// The reliefs of all materials, and whether seams are welded.
+type CellKey = (Vec<Option<FieldKey>>, bool);
 
 /// What of a relief its displacement depends on: map, addressing, scale and offset.
 type FieldKey = (usize, Addressing, [u32; 2]);
@@ -188,15 +191,16 @@ impl DisplacementCell {
     /// The displacement of these reliefs, which must belong to the one mesh of the cell.
     #[must_use]
     pub fn get(&self, mesh: &TriangleMesh, reliefs: &Reliefs<'_, '_>) -> Arc<Displacement> {
-        let key: Vec<_> = reliefs.fields.iter().map(|f| f.as_ref().map(key)).collect();
+        let fields = reliefs.fields.iter().map(|f| f.as_ref().map(key));
+        let key: CellKey = (fields.collect(), reliefs.weld_seams);
         let mut cell = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((known, weld_seams, displacement)) = &*cell
-            && (known, *weld_seams) == (&key, reliefs.weld_seams)
+        if let Some((known, displacement)) = &*cell
+            && *known == key
         {
             return Arc::clone(displacement);
         }
         let displacement = Arc::new(Displacement::new(mesh, reliefs));
-        *cell = Some((key, reliefs.weld_seams, Arc::clone(&displacement)));
+        *cell = Some((key, Arc::clone(&displacement)));
         displacement
     }
 
@@ -205,7 +209,7 @@ impl DisplacementCell {
     pub fn last(&self) -> Option<Arc<Displacement>> {
         let cell = self.0.try_lock().ok()?;
         cell.as_ref()
-            .map(|(.., displacement)| Arc::clone(displacement))
+            .map(|(_, displacement)| Arc::clone(displacement))
     }
 }
 

@@ -334,7 +334,7 @@ impl<S: Simd> Lanes<S> {
         let zero = S::f64s::splat(simd, 0.0);
         self.x.n = S::f64s::splat(simd, f64::from(relief.size[0]));
         self.y.n = S::f64s::splat(simd, f64::from(relief.size[1]));
-        self.steps = self.steps + 1.0;
+        self.steps += 1.0;
         let capped = self.steps.simd_gt(self.cap);
         let inv = self.inv_size;
         let (span_x, span_y) = (self.x.span(self.size, inv), self.y.span(self.size, inv));
