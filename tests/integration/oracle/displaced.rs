@@ -276,7 +276,7 @@ fn any_ray(random: &mut Random) -> Ray {
     let (origin, target) = (point(3.0), point(1.5));
     Ray {
         origin,
-        dir: (target - origin).normalize(),
+        dir: (target - origin).normalize_or(Vec3::X),
     }
 }
 
@@ -384,7 +384,7 @@ fn closed_displaced_surfaces_let_no_ray_out() {
             let target = corners[0].lerp(corners[1], along);
             Ray {
                 origin: inside + Vec3::from([0; 3].map(|_| random.between(-0.1, 0.1) as f32)),
-                dir: (target - inside).normalize(),
+                dir: (target - inside).normalize_or(Vec3::X),
             }
         };
         let rays: Vec<Ray> = (0..ray_count()).map(|_| aimed()).collect();
