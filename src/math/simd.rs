@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 
 pub(crate) use fearless_simd::{Bytes, Select, Simd, SimdBase, SimdFloat, SimdMask};
 pub(crate) use fearless_simd::{ExtractToken, SimdCvtFloat, SimdNarrow, SimdWiden, f32x8};
@@ -13,9 +13,7 @@ pub(crate) use fearless_simd::{ExtractToken, SimdCvtFloat, SimdNarrow, SimdWiden
 pub enum SimdLevel {
     /// One ray at a time: the plain kernel that the others are measured against.
     Scalar,
-    /// Four lanes, on any x86-64.
-    Sse2,
-    /// Four lanes, with the instructions of 2008.
+    /// Four lanes, on any x86-64 since 2008.
     Sse42,
     /// Eight lanes.
     Avx2,
@@ -55,9 +53,8 @@ pub fn force_level(level: SimdLevel) -> Result<(), UnsupportedLevel> {
 
 impl SimdLevel {
     /// All levels of all machines.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 5] = [
         Self::Scalar,
-        Self::Sse2,
         Self::Sse42,
         Self::Avx2,
         Self::Avx512,
@@ -69,7 +66,6 @@ impl SimdLevel {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Scalar => "scalar",
-            Self::Sse2 => "sse2",
             Self::Sse42 => "sse4.2",
             Self::Avx2 => "avx2",
             Self::Avx512 => "avx512",
@@ -105,7 +101,7 @@ impl SimdLevel {
         let Some(token) = self.token() else {
             return false;
         };
-        dispatch!(token, simd => kernel.run(simd));
+        launch(token, kernel);
         true
     }
 
@@ -113,7 +109,7 @@ impl SimdLevel {
     #[inline]
     pub(crate) fn run_or_plain(self, kernel: impl Kernel) {
         let token = self.token().unwrap_or_else(Level::fallback);
-        dispatch!(token, simd => kernel.run(simd));
+        launch(token, kernel);
     }
 
     /// The proof that the processor has the instructions.
@@ -122,7 +118,6 @@ impl SimdLevel {
         let best = Level::new();
         match self {
             Self::Scalar | Self::Neon => None,
-            Self::Sse2 => best.as_sse2().map(Level::Sse2),
             Self::Sse42 => best.as_sse4_2().map(Level::Sse4_2),
             Self::Avx2 => best.as_avx2().map(Level::Avx2),
             Self::Avx512 => best.as_avx512().map(Level::Avx512),
@@ -141,6 +136,38 @@ impl SimdLevel {
     #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
     fn token(self) -> Option<Level> {
         None
+    }
+}
+
+/// Compiles a kernel once for every kind of token that a [`SimdLevel`] may hold.
+#[inline]
+fn launch(token: Level, kernel: impl Kernel) {
+    match token {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Sse4_2(simd) => simd.vectorize(
+            #[inline(always)]
+            || kernel.run(simd),
+        ),
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Avx2(simd) => simd.vectorize(
+            #[inline(always)]
+            || kernel.run(simd),
+        ),
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Avx512(simd) => simd.vectorize(
+            #[inline(always)]
+            || kernel.run(simd),
+        ),
+        #[cfg(target_arch = "aarch64")]
+        Level::Neon(simd) => simd.vectorize(
+            #[inline(always)]
+            || kernel.run(simd),
+        ),
+        Level::Fallback(simd) => simd.vectorize(
+            #[inline(always)]
+            || kernel.run(simd),
+        ),
+        _ => unreachable!("no level has another token"),
     }
 }
 
