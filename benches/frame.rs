@@ -1,7 +1,7 @@
 //! Milliseconds of what the window does while a person works: start, first pass, re-shading, encoding.
 //!
-//! `cargo bench --bench frame` prints medians and the span between the fastest and the slowest of 15 rounds
-//! at 1280×720 on two threads. Without `--bench` (as `cargo test` runs it) it only checks, at a small size.
+//! `cargo bench --bench frame` prints medians and the span between the fastest and the slowest of 15 rounds, or of 3
+//! or more where they take long, at 1280×720 on two threads. Without `--bench` (as `cargo test` runs it) it only checks, at a small size.
 
 #![expect(clippy::print_stdout, reason = "a benchmark's figures are its output")]
 

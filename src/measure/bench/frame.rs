@@ -1,6 +1,7 @@
 //! A frame's parts, as the window meets them while a person works.
 
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use super::check::same_picture;
 use super::spread::millis;
@@ -13,6 +14,11 @@ use crate::scene::Scene;
 const STRIDE: u32 = 4;
 /// How far the camera turns between frames, radians: a step of a slow drag.
 const TURN: f64 = 0.01;
+
+/// Rounds that are timed however long they take.
+const FEWEST_ROUNDS: usize = 3;
+/// After this no further round is begun.
+const PATIENCE: Duration = Duration::from_secs(8);
 
 /// One view of one scene by one method.
 #[derive(Debug, Clone)]
@@ -63,7 +69,8 @@ impl FrameCase {
         same_picture("vector code", &fresh, &first_sample(&[&scalar])?)
     }
 
-    /// Times each part `rounds` times, after a round that warms up.
+    /// Times each part `rounds` times, after a round that warms up; fewer times, but at least thrice, where that
+    /// would take longer than a few seconds.
     ///
     /// # Errors
     /// If there are no threads.
@@ -74,7 +81,11 @@ impl FrameCase {
         let mut times: [Vec<f64>; 5] = Default::default();
         let mut stages = StageLog::default();
         let mut counters = Counters::default();
+        let began = Instant::now();
         for round in 0..=rounds {
+            if round > FEWEST_ROUNDS && began.elapsed() > PATIENCE {
+                break;
+            }
             renderer.start(turned.clone());
             renderer.start(self.snapshot.clone());
             stages.pass(&mut renderer);
