@@ -12,8 +12,8 @@ use glam::Vec3;
 use super::{Ray, RaySlabs};
 
 pub use textbook::{MollerTrumbore, ReportEdges};
-pub use watertight::Watertight;
-pub(super) use watertight::{Axis, edge, inside_in_f64, meet_plane, sheared};
+pub use watertight::{Axis, Watertight};
+pub(super) use watertight::{edge, inside_in_f64, meet_plane, sheared};
 
 /// Number of triangles that are tested together.
 pub const LANES: usize = 8;

@@ -13,6 +13,7 @@ use crate::math::{LinearRgb, Real, V3};
 use crate::scene::{Background, BentNormals, Scene, ShadingModel};
 use crate::shading::{Falloff, LightKind};
 use crate::surface::displaced::{DisplacedMesh, Displacement, Reliefs};
+use crate::surface::mapping::MappingSettings;
 use crate::surface::mapping::relief::ReliefField;
 
 /// Camera rays of a pinhole in internal units (report 2.1–2.3 with rotation; pixel row 0 on top).
@@ -105,7 +106,7 @@ impl<'a> Frame<'a> {
             lights: frame_lights(snapshot),
             ambient: ambient(snapshot),
             has_cutouts: materials.iter().any(|m| m.opacity.is_some()),
-            displaced: FrameDisplacement::new(scene, &materials, settings.mapping.weld_seams),
+            displaced: FrameDisplacement::new(scene, &materials, &settings.mapping),
             materials,
             model: settings.shading.model,
             bent_normals: settings.shading.bent_normals,
@@ -152,13 +153,20 @@ pub struct FrameDisplacement<'a> {
     /// One for each material.
     fields: Vec<Option<ReliefField<'a>>>,
     weld_seams: bool,
+    /// Bytes that all workers together may keep boxes in.
+    pub memory: usize,
     /// What was made of them and the mesh.
     pub displacement: Arc<Displacement>,
 }
 
 impl<'a> FrameDisplacement<'a> {
     /// `None` if no material has such a relief.
-    fn new(scene: &'a Scene, materials: &[FrameMaterial<'a>], weld_seams: bool) -> Option<Self> {
+    fn new(
+        scene: &'a Scene,
+        materials: &[FrameMaterial<'a>],
+        mapping: &MappingSettings,
+    ) -> Option<Self> {
+        let weld_seams = mapping.weld_seams;
         materials.iter().any(|m| m.relief.is_some()).then(|| {
             let fields: Vec<_> = materials.iter().map(|m| m.relief).collect();
             let reliefs = Reliefs {
@@ -169,6 +177,7 @@ impl<'a> FrameDisplacement<'a> {
             Self {
                 fields,
                 weld_seams,
+                memory: (mapping.displacement_memory as usize) << 20,
                 displacement,
             }
         })

@@ -8,7 +8,7 @@ use crate::shading::Material;
 use crate::surface::SurfaceParts;
 use crate::surface::mapping::relief::ReliefField;
 use crate::surface::mapping::{
-    BoundHeight, BoundNormal, MappingSettings, MaterialMapping, MaterialMaps, Method,
+    BoundHeight, BoundNormal, MappingSettings, MaterialMapping, MaterialMaps,
 };
 use crate::texture::{Addressing, ColorMap, HeightMap, MapRole, MapSlot};
 
@@ -136,6 +136,12 @@ impl<'a> FrameMaterial<'a> {
         }
     }
 
+    /// The relief, whether it is searched for places that shadow each other or is geometry of its own.
+    #[must_use]
+    pub fn field(&self) -> Option<&ReliefField<'a>> {
+        self.relief.as_ref().or_else(|| self.mapping.self_shadow())
+    }
+
     /// What of a surface this material looks at, given that its triangle has texture coordinates or not.
     #[must_use]
     pub const fn parts(&self, has_uv: bool) -> SurfaceParts {
@@ -149,9 +155,10 @@ impl<'a> FrameMaterial<'a> {
 
 /// The relief that is geometry of its own, if the method wants one.
 fn displaced<'a>(mapping: &MappingSettings, maps: &MaterialMaps<'a>) -> Option<ReliefField<'a>> {
-    let height = maps.height.filter(|h| h.scale != 0.0 || h.offset != 0.0)?;
-    let wanted = mapping.method == Method::Displacement && mapping.use_height;
-    ReliefField::new(height, maps.pyramid?).filter(|_| wanted)
+    if !mapping.displaces() {
+        return None;
+    }
+    ReliefField::new(maps.height.filter(BoundHeight::moves)?, maps.pyramid?)
 }
 
 /// The amplitude in force, world units: the material's own, else the scene's, else the material's

@@ -15,7 +15,7 @@ use crate::geometry::{Hit, Ray, offset_by_bound};
 use crate::math::{LinearRgb, V3, gamma, srgb8_from_linear};
 use crate::scene::BentNormals;
 use crate::shading::softened_horizon;
-use crate::surface::displaced::{Search, SurfaceHit, Tracer};
+use crate::surface::displaced::{SurfaceHit, Tracer};
 use crate::surface::mapping::relief::is_shadowed;
 use crate::surface::{SurfaceInteraction, SurfaceParts, surface_at};
 
@@ -250,10 +250,7 @@ fn nearest(frame: &Frame<'_>, ray: &Ray, t_max: f32) -> Option<Nearest> {
     let solid = |prim, u, v| tests.is_solid(frame, prim, u, v);
     let displaced = frame.displaced.as_ref().and_then(|relief| {
         let mesh = relief.mesh(frame.mesh);
-        let mut tracer = Tracer::default();
-        tracer.push(*ray, t_max);
-        tracer.run(mesh, Search::Closest, frame.level);
-        tracer.hit(mesh, 0)
+        mesh.closest(&mut Tracer::default(), ray, t_max, frame.level)
     });
     let t_max = displaced.map_or(t_max, |hit| hit.t);
     let plain = frame.bvh.intersect::<Watertight, _>(ray, t_max, &solid);
@@ -285,11 +282,7 @@ fn hit_story(snapshot: &Snapshot, frame: &Frame<'_>, ray: &Ray, found: &Nearest)
     let parts = material.parts(attributes.has_uv);
     let mut plain = surface_at(frame.mesh, hit, ray, parts);
     if let Some(point) = &found.displaced {
-        let n = point.normal.abs();
-        plain.p = point.p.into();
-        // As the bound along the normal, spread over the axes.
-        plain.p_error = (n * (point.bound / n.length_squared())).into();
-        plain.n_geo = point.normal.into();
+        point.replace_point(&mut plain);
     }
     let mut mapped = plain;
     if found.displaced.is_some() {

@@ -8,7 +8,7 @@ use super::stages::{Scratch, StageWatch};
 use super::{Counters, Frame};
 use crate::math::{LinearRgb, SrgbEncoder};
 use crate::scene::{RenderSettings, Scene};
-use crate::surface::mapping::{MappingSettings, Method};
+use crate::surface::mapping::MappingSettings;
 use crate::texture::MapRole;
 
 /// What to render: everything a pass depends on besides its number.
@@ -161,6 +161,9 @@ impl Progressive {
             let mut scratch = self.scratch[context.index()]
                 .lock()
                 .unwrap_or_else(PoisonError::into_inner);
+            if frame.displaced.is_none() {
+                scratch.work.tracer.forget();
+            }
             while let Some(&i) = film.order.get(next.fetch_add(1, Ordering::Relaxed)) {
                 let mut tile = lock(&film.tiles[i]);
                 if tile.samples < goal {
@@ -208,6 +211,16 @@ impl Progressive {
             sum += preview.counters();
         }
         sum
+    }
+
+    /// Heap bytes that the workers keep of displaced triangles.
+    #[must_use]
+    pub fn kept_bytes(&self) -> usize {
+        let kept = |scratch: &Mutex<Scratch>| {
+            let scratch = scratch.lock().unwrap_or_else(PoisonError::into_inner);
+            scratch.work.tracer.kept()
+        };
+        self.scratch.iter().map(kept).sum()
     }
 
     /// Whether hits of the snapshot before this one serve again, so that camera rays are saved.
@@ -322,21 +335,19 @@ fn same_visibility(a: &Snapshot, b: &Snapshot) -> bool {
             .collect()
     };
     let displaced = |s: &Snapshot| {
-        let MappingSettings {
-            method,
-            amplitude,
-            midlevel,
-            use_height,
-            weld_seams,
-            ..
-        } = s.settings.mapping;
+        let mapping = &s.settings.mapping;
         let heights = s.settings.materials.iter().map(|m| {
             let map = m.map(MapRole::Height).cloned();
             (map, m.amplitude, m.default_amplitude, m.midlevel)
         });
-        (method == Method::Displacement && use_height).then(|| {
-            let heights: Vec<_> = heights.collect();
-            (amplitude, midlevel, weld_seams, heights)
+        mapping.displaces().then(|| {
+            let MappingSettings {
+                amplitude,
+                midlevel,
+                weld_seams,
+                ..
+            } = *mapping;
+            (amplitude, midlevel, weld_seams, heights.collect::<Vec<_>>())
         })
     };
     Arc::ptr_eq(&a.scene, &b.scene)

@@ -100,6 +100,15 @@ fn the_exact_relief_is_the_displaced_plane() {
 }
 
 #[test]
+fn true_displacement_is_the_displaced_plane() {
+    let lit = psnr_of(Method::Displacement, [true, true], 64, "plane_45_disp.exr");
+    assert!(lit >= 45.0, "with shadows: {lit}");
+    let truth = "plane_45_dispns.exr";
+    let shadowless = psnr_of(Method::Displacement, [true, false], 64, truth);
+    assert!(shadowless >= 53.0, "without: {shadowless}");
+}
+
+#[test]
 fn the_flat_plane_is_the_reference() {
     assert_psnr("flat.toml", "plane_45_flat.exr", 65.0);
 }

@@ -254,6 +254,7 @@ impl Random {
         mapping.use_normal = self.flag();
         mapping.use_parallax = self.flag();
         mapping.weld_seams = self.flag();
+        mapping.displacement_memory = self.below(1 << 20);
         mapping.search = SearchSettings {
             layers: 1 + self.below(4096),
             min_layers: 1 + self.below(4096),

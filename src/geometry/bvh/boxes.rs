@@ -32,12 +32,6 @@ impl BoxTree {
         }
     }
 
-    /// Box around all boxes.
-    #[must_use]
-    pub const fn bounds(&self) -> Aabb {
-        self.bvh.bounds()
-    }
-
     /// Largest magnitude of a coordinate.
     #[must_use]
     pub const fn reach(&self) -> f32 {

@@ -11,9 +11,12 @@ use crate::geometry::{Ray, RaySlabs};
 
 /// A coordinate axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::geometry) enum Axis {
+pub enum Axis {
+    /// The first.
     X = 0,
+    /// The second.
     Y = 1,
+    /// The third.
     Z = 2,
 }
 
@@ -51,7 +54,8 @@ pub struct Watertight {
 impl Axis {
     /// Axis of the largest component.
     #[inline(always)]
-    pub(in crate::geometry) fn of_largest(v: Vec3) -> Self {
+    #[must_use]
+    pub fn of_largest(v: Vec3) -> Self {
         let [x, y, z] = v.abs().to_array();
         if x > y && x > z {
             Self::X
@@ -64,7 +68,7 @@ impl Axis {
 
     /// Turns the axes round until this one is the last.
     #[inline(always)]
-    pub(in crate::geometry) fn last<T>(self, [x, y, z]: [T; 3]) -> [T; 3] {
+    pub fn last<T>(self, [x, y, z]: [T; 3]) -> [T; 3] {
         match self {
             Self::X => [y, z, x],
             Self::Y => [z, x, y],

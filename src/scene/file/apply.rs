@@ -73,6 +73,7 @@ fn apply_mapping(keys: &MappingKeys, mapping: &mut MappingSettings) {
     put(&mut mapping.use_normal, keys.use_normal);
     put(&mut mapping.use_parallax, keys.use_parallax);
     put(&mut mapping.weld_seams, keys.weld_seams);
+    put(&mut mapping.displacement_memory, keys.displacement_memory);
     let search = &mut mapping.search;
     put(&mut search.layers, keys.layers);
     put(&mut search.min_layers, keys.min_layers);

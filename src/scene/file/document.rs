@@ -105,6 +105,8 @@ pub(super) struct MappingKeys {
     pub use_parallax: Option<bool>,
     /// `weld_seams`.
     pub weld_seams: Option<bool>,
+    /// `displacement_memory`, mebibytes.
+    pub displacement_memory: Option<u32>,
     /// `layers`.
     pub layers: Option<u32>,
     /// `min_layers`.

@@ -10,7 +10,7 @@ use super::parse_light::lights;
 use super::parse_material::materials;
 use super::section::{Item, Limits, Section};
 use crate::scene::{Background, BentNormals, ShadingModel};
-use crate::surface::mapping::{Derivative, Lookup, Method, SearchSettings};
+use crate::surface::mapping::{Derivative, Lookup, MappingSettings, Method, SearchSettings};
 
 /// Most columns or rows of a picture.
 const MAX_SIDE: u32 = 65_536;
@@ -191,6 +191,9 @@ fn mapping(root: &mut Section<'_>) -> Read<MappingKeys> {
         use_normal: table.read("use_normal", Item::boolean)?,
         use_parallax: table.read("use_parallax", Item::boolean)?,
         weld_seams: table.read("weld_seams", Item::boolean)?,
+        displacement_memory: table.read("displacement_memory", |x| {
+            x.integer(0, MappingSettings::MAX_DISPLACEMENT_MEMORY)
+        })?,
         layers: table.read("layers", |x| x.integer(1, SearchSettings::MAX_LAYERS))?,
         min_layers: table.read("min_layers", |x| x.integer(1, SearchSettings::MAX_LAYERS))?,
         bisections: table.read("bisections", |x| {

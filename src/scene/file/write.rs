@@ -199,6 +199,7 @@ fn mapping(text: &mut Text, view: &SceneView<'_>) -> Result<(), SaveError> {
     text.raw("use_normal", mapping.use_normal);
     text.raw("use_parallax", mapping.use_parallax);
     text.raw("weld_seams", mapping.weld_seams);
+    text.raw("displacement_memory", mapping.displacement_memory);
     let search = &mapping.search;
     text.raw("layers", search.layers);
     text.raw("min_layers", search.min_layers);

@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::Reliefs;
+use super::fine::Cut;
 use super::seams::Seams;
 use crate::geometry::TriangleMesh;
 
@@ -11,11 +12,8 @@ use crate::geometry::TriangleMesh;
 pub enum Shape {
     /// Its displacement normal is constant: a height field over a flat chart.
     Flat,
-    /// It is cut into `2^segments_log2` segments along every edge.
-    Fine {
-        /// At least 2.
-        segments_log2: u8,
-    },
+    /// It is cut into micro-triangles.
+    Fine(Cut),
 }
 
 /// Welded normals that differ less than this angle (radians) from their mean are taken as equal: 10⁻⁵ of
@@ -70,16 +68,17 @@ pub fn shapes(
             }
         }
     }
-    let shape = |&part: &u32| {
+    let shape = |(&prim, &part): (&u32, &u32)| {
         if is_flat[part as usize] {
             Shape::Flat
         } else {
-            Shape::Fine {
+            Shape::Fine(Cut {
                 segments_log2: segments_log2(texels[part as usize]),
-            }
+                on_seam: seams.touches(prim),
+            })
         }
     };
-    parts.iter().map(shape).collect()
+    prims.iter().zip(&parts).map(shape).collect()
 }
 
 /// At least two segments for each texel along an edge.

@@ -1,28 +1,20 @@
 //! A displaced triangle cut into micro-triangles, none of which is stored.
 //!
 //! A triangle of `2^k` segments falls into sixteen of `2^(k−2)`, and so on down to four segments, whose
-//! sixteen micro-triangles are made on the spot. What is between has no boxes either: a part with heights
-//! in `[low, high]` lies in the hull of its corners at both, and a ray sees from its own axes whether it
-//! passes that.
+//! sixteen micro-triangles are made on the spot. The boxes of sixteen parts are made when a ray first comes by, and
+//! kept as long as there is room: a part with heights in `[low, high]` lies in the hull of its corners at both.
 
 use glam::{Vec2, Vec3};
 
-use super::ranges::{RangeCache, Ranges};
+use super::nodes::{Boxes, NodeCache, PARTS, Row};
 use super::trace::SurfaceHit;
 use super::{Displacement, Reliefs, seams};
 use crate::geometry::triangle::{Corners8, LANES, TriangleTest as _, Watertight};
 use crate::geometry::{Ray, RaySlabs, TriangleMesh};
-use crate::math::lanes::{Lanes, ones};
-use crate::math::simd::{Simd, SimdBase as _, SimdMask as _};
-use crate::math::wide::Wide;
+use crate::math::lanes::ones;
+use crate::math::simd::{Simd, SimdBase as _};
 use crate::math::{Real as _, V2, gamma};
 use crate::surface::mapping::relief::ReliefField;
-
-/// Parts that a part falls into.
-const PARTS: usize = 16;
-
-/// A number for each part or each vertex of a leaf.
-type Row = Lanes<f32, PARTS>;
 
 /// Anchor and signed size of the sixteen parts of a triangle with four segments: corners
 /// `(a, b)`, `(a + s, b)`, `(a, b + s)`. A negative size is a triangle turned by half a turn.
@@ -80,71 +72,32 @@ pub struct Patch<'a, 'm> {
     p: [Vec3; 3],
     n: [Vec3; 3],
     uv: [Vec2; 3],
-    segments_log2: u8,
-    on_seam: bool,
-    /// The side of the micro-triangles' winding that is the front.
-    front: f32,
-    range: [f32; 2],
+    cut: Cut,
+}
+
+/// How a triangle is cut up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cut {
+    /// Every edge falls into 2 to the power of this segments; at least 2.
+    pub segments_log2: u8,
+    /// Whether a corner lies on a seam.
+    pub on_seam: bool,
 }
 
 /// A ray made ready for all patches.
 #[derive(Debug)]
 pub struct FineRay {
-    pub ray: Ray,
     test: Watertight,
     slabs: RaySlabs,
-    /// Axes with that of the largest direction last, and the shear that lays the ray along it.
-    axes: [usize; 3],
-    shear: [f32; 2],
-    inv_along: f32,
-    /// What rounding may move a point across the ray.
-    margin: f32,
 }
 
 impl FineRay {
     pub fn new(ray: &Ray, reach: f32) -> Self {
-        let dir = ray.dir.to_array();
-        let size = ray.dir.abs().to_array();
-        let along = if size[0] > size[1] && size[0] > size[2] {
-            0
-        } else if size[1] > size[2] {
-            1
-        } else {
-            2
-        };
-        let axes = [(along + 1) % 3, (along + 2) % 3, along];
-        let inv_along = 1.0 / dir[along];
-        // Corners, their translation, the shear, three weighed sums and the displacement: each rounds
-        // numbers of at most twice this size.
-        let size = reach + ray.origin.abs().max_element();
         Self {
-            ray: *ray,
             test: Watertight::new(ray),
             slabs: RaySlabs::new(ray, reach),
-            axes,
-            shear: [dir[axes[0]] * inv_along, dir[axes[1]] * inv_along],
-            inv_along,
-            margin: size * (64.0 * f32::EPSILON),
         }
     }
-
-    /// A direction on the ray's own axes; the last counts along the ray, in distances.
-    #[inline(always)]
-    fn turned(&self, v: Vec3) -> [f32; 3] {
-        let v = v.to_array();
-        let z = v[self.axes[2]];
-        [
-            v[self.axes[0]] - self.shear[0] * z,
-            v[self.axes[1]] - self.shear[1] * z,
-            z * self.inv_along,
-        ]
-    }
-}
-
-/// A patch as a ray sees it: corners and normals on the ray's axes.
-struct Seen {
-    p: [[f32; 3]; 3],
-    n: [[f32; 3]; 3],
 }
 
 /// A part still to be looked at.
@@ -153,9 +106,7 @@ struct Part {
     a: i32,
     b: i32,
     size: i32,
-    /// Displacements within.
-    range: [f32; 2],
-    /// Where the ray may first meet it.
+    /// Where the ray enters its box.
     near: f32,
 }
 
@@ -166,7 +117,7 @@ impl<'a, 'm> Patch<'a, 'm> {
         mesh: &TriangleMesh,
         reliefs: &Reliefs<'a, 'm>,
         displacement: &Displacement,
-        (prim, segments_log2): (u32, u8),
+        (prim, cut): (u32, Cut),
     ) -> Option<Self> {
         let material = usize::from(mesh.attributes[prim as usize].material);
         let field = reliefs.fields.get(material)?.as_ref()?;
@@ -183,43 +134,27 @@ impl<'a, 'm> Patch<'a, 'm> {
         let p = order.map(|k| corners[k]);
         let n = order.map(|k| displacement.normals[vertices[k] as usize]);
         let uv = order.map(|k| mesh.uvs[vertices[k] as usize]);
-        let winding = (p[1] - p[0]).cross(p[2] - p[0]);
-        let front = if winding.dot(n[0] + n[1] + n[2]) < 0.0 {
-            -1.0
-        } else {
-            1.0
-        };
-        let on_seam = displacement.seams.touches(prim);
-        let mut patch = Self {
+        Some(Self {
             prim,
             field,
             order,
             p,
             n,
             uv,
-            segments_log2,
-            on_seam,
-            front,
-            range: seams::range(reliefs).map(|d| d as f32),
-        };
-        if !on_seam {
-            let segments = 1 << segments_log2;
-            patch.range = patch.range_of([0, 0, segments]);
-        }
-        Some(patch)
+            cut,
+        })
     }
 
     /// Smallest and largest displacement in a part.
-    #[inline]
-    fn range_of(&self, [a, b, size]: [i32; 3]) -> [f32; 2] {
-        let segments = 1 << self.segments_log2;
+    fn range_of(&self, reliefs: &Reliefs<'_, '_>, [a, b, size]: [i32; 3]) -> [f32; 2] {
+        let segments = 1 << self.cut.segments_log2;
         // On a seam's edge heights are means with what lies on its other side.
         let touches = |a: i32, b: i32, size: i32| {
             let sums = [a + b, a + b + size];
             a.min(a + size) == 0 || b.min(b + size) == 0 || sums.contains(&segments)
         };
-        if self.on_seam && touches(a, b, size) {
-            return self.range;
+        if self.cut.on_seam && touches(a, b, size) {
+            return seams::range(reliefs).map(|d| d as f32);
         }
         let per_segment = 1.0 / f64::from(segments);
         let place = |a: i32, b: i32| {
@@ -237,137 +172,45 @@ impl<'a, 'm> Patch<'a, 'm> {
         [low as f32 - margin, high as f32 + margin]
     }
 
-    /// The hit before `best`, if it is nearer; with `any`, whatever comes first.
+    /// Boxes of the sixteenths of a part.
     #[inline(always)]
-    pub fn meet<S: Simd>(
-        &self,
-        simd: S,
-        (reliefs, displacement): (&Reliefs<'_, '_>, &Displacement),
-        ray: &FineRay,
-        (mut best, any): (Best, bool),
-        (ranges, counters): (&mut RangeCache, &mut FineCounters),
-    ) -> Best {
-        let origin = ray.ray.origin;
-        let seen = Seen {
-            p: [
-                ray.turned(self.p[0] - origin),
-                ray.turned(self.p[1] - origin),
-                ray.turned(self.p[2] - origin),
-            ],
-            n: [
-                ray.turned(self.n[0]),
-                ray.turned(self.n[1]),
-                ray.turned(self.n[2]),
-            ],
-        };
-        let mut stack = [Part {
-            a: 0,
-            b: 0,
-            size: 0,
-            range: [0.0; 2],
-            near: 0.0,
-        }; STACK];
-        let mut depth = self.start(&mut stack);
-        while depth > 0 {
-            depth -= 1;
-            let part = stack[depth];
-            if part.near > best.t {
-                continue;
-            }
-            if part.size.abs() == 4 {
-                counters.leaves += 1;
-                self.meet_leaf(simd, (reliefs, displacement), ray, &part, &mut best);
-                if any && best.hit.is_some() {
-                    return best;
+    fn boxes<S: Simd>(&self, simd: S, door: Door<'_, '_>, part: &Part) -> Boxes {
+        let mut boxes = [[Row::splat(f32::INFINITY), Row::splat(f32::NEG_INFINITY)]; 3];
+        let quarter = part.size / 4;
+        for (i, [a, b, s]) in CUT.into_iter().enumerate() {
+            let [a, b, s] = [part.a + a * quarter, part.b + b * quarter, s * quarter];
+            if s.abs() == 4 {
+                let points = self.leaf_points(simd, door, [a, b, s]);
+                for (axis, row) in points.iter().enumerate() {
+                    let [low, high] = extremes(&row.0);
+                    boxes[axis][0].0[i] = low;
+                    boxes[axis][1].0[i] = high;
                 }
                 continue;
             }
-            counters.parts += 1;
-            let known = ranges.entry((self.prim, [part.a, part.b, part.size]));
-            let seen = (&seen, &part, known);
-            depth = self.open(simd, ray, seen, best.t, (&mut stack, depth));
-        }
-        best
-    }
-
-    /// Puts the whole triangle on the stack, or its quarters if it would not fall into sixteenths down to
-    /// four segments; returns the stack's depth.
-    #[inline(always)]
-    fn start(&self, stack: &mut [Part; STACK]) -> usize {
-        let size = 1 << self.segments_log2;
-        let part = |[a, b, size]: [i32; 3]| Part {
-            a,
-            b,
-            size,
-            range: self.range,
-            near: f32::NEG_INFINITY,
-        };
-        if self.segments_log2.is_multiple_of(2) {
-            stack[0] = part([0, 0, size]);
-            return 1;
-        }
-        let h = size / 2;
-        stack[0] = part([0, 0, h]);
-        stack[1] = part([h, 0, h]);
-        stack[2] = part([0, h, h]);
-        stack[3] = part([h, h, -h]);
-        4
-    }
-
-    /// Puts those sixteenths of a part that the ray may meet on the stack, the nearest on top; returns its
-    /// new depth.
-    #[inline(always)]
-    fn open<S: Simd>(
-        &self,
-        simd: S,
-        ray: &FineRay,
-        (seen, part, known): (&Seen, &Part, &mut Ranges),
-        t_max: f32,
-        (stack, mut depth): (&mut [Part; STACK], usize),
-    ) -> usize {
-        let quarter = part.size / 4;
-        let per_segment = 1.0 / (1 << self.segments_log2) as f32;
-        let (mut low, mut high) = (Row::splat(part.range[0]), Row::splat(part.range[1]));
-        let mut places = [Row::splat(0.0); 3];
-        for (i, [a, b, s]) in CUT.into_iter().enumerate() {
-            places[0].0[i] = (part.a + a * quarter) as f32 * per_segment;
-            places[1].0[i] = (part.b + b * quarter) as f32 * per_segment;
-            places[2].0[i] = (s * quarter) as f32 * per_segment;
-        }
-        let mut near = Row::splat(0.0);
-        let coarse = meets(simd, ray, seen, &places, [&low, &high], t_max, &mut near);
-        if coarse == 0 {
-            return depth;
-        }
-        for i in ones(coarse) {
-            let i = i % PARTS;
-            if known[i][0].is_nan() {
-                let [a, b, s] = CUT[i].map(|x| x * quarter);
-                known[i] = self.range_of([part.a + a, part.b + b, s]);
-            }
-            [low.0[i], high.0[i]] = known[i];
-        }
-        let met = coarse & meets(simd, ray, seen, &places, [&low, &high], t_max, &mut near);
-        let first = depth;
-        for i in ones(met) {
-            let i = i % PARTS;
-            let [a, b, s] = CUT[i].map(|x| x * quarter);
-            let child = Part {
-                a: part.a + a,
-                b: part.b + b,
-                size: s,
-                range: [low.0[i], high.0[i]],
-                near: near.0[i],
+            let range = self.range_of(door.0, [a, b, s]);
+            let mut add = |axis: usize, x: f32| {
+                let [low, high]: &mut [Row; 2] = &mut boxes[axis];
+                low.0[i] = low.0[i].min(x);
+                high.0[i] = high.0[i].max(x);
             };
-            let mut at = depth;
-            while at > first && stack[at - 1].near < child.near {
-                stack[at] = stack[at - 1];
-                at -= 1;
+            let per_segment = 1.0 / (1 << self.cut.segments_log2) as f32;
+            for [a, b] in [[a, b], [a + s, b], [a, b + s]] {
+                let (w1, w2) = (a as f32 * per_segment, b as f32 * per_segment);
+                let w = [1.0 - w1 - w2, w1, w2];
+                for axis in 0..3 {
+                    let p = sum(w, self.p.map(|p| p[axis]));
+                    let n = sum(w, self.n.map(|n| n[axis]));
+                    // The sums round numbers of at most this size, here and where vertices are made.
+                    let margin = door.1.tree.reach() * (16.0 * f32::EPSILON);
+                    for d in range {
+                        add(axis, p + n * d - margin);
+                        add(axis, p + n * d + margin);
+                    }
+                }
             }
-            stack[at] = child;
-            depth += 1;
         }
-        depth
+        boxes
     }
 
     /// Makes the sixteen micro-triangles of a part with four segments and tests them.
@@ -375,13 +218,13 @@ impl<'a, 'm> Patch<'a, 'm> {
     fn meet_leaf<S: Simd>(
         &self,
         simd: S,
-        (reliefs, displacement): (&Reliefs<'_, '_>, &Displacement),
+        door: Door<'_, '_>,
         ray: &FineRay,
         part: &Part,
         best: &mut Best,
     ) {
         let quarter = part.size / 4;
-        let points = self.leaf_points(simd, (reliefs, displacement), part);
+        let points = self.leaf_points(simd, door, [part.a, part.b, part.size]);
         let mut corners: [Corners8; 2] = [[[[0.0; LANES]; 3]; 3]; 2];
         for (i, [a, b, s]) in CUT.into_iter().enumerate() {
             let triangle = [vertex(a, b), vertex(a + s, b), vertex(a, b + s)];
@@ -415,18 +258,17 @@ impl<'a, 'm> Patch<'a, 'm> {
 
     /// Positions of the vertices of a part with four segments.
     #[inline(always)]
-    fn leaf_points<S: Simd>(
-        &self,
-        simd: S,
-        (reliefs, displacement): (&Reliefs<'_, '_>, &Displacement),
-        part: &Part,
-    ) -> [Row; 3] {
-        let quarter = part.size / 4;
-        let per_segment = 1.0 / (1 << self.segments_log2) as f32;
+    fn leaf_points<S: Simd>(&self, simd: S, door: Door<'_, '_>, [a0, b0, s]: [i32; 3]) -> [Row; 3] {
+        let quarter = s / 4;
+        let per_segment = 1.0 / (1 << self.cut.segments_log2) as f32;
         let mut weights = [Row::splat(0.0); 2];
         for (i, [a, b]) in GRID.into_iter().enumerate() {
-            weights[0].0[i] = (part.a + a * quarter) as f32 * per_segment;
-            weights[1].0[i] = (part.b + b * quarter) as f32 * per_segment;
+            weights[0].0[i] = (a0 + a * quarter) as f32 * per_segment;
+            weights[1].0[i] = (b0 + b * quarter) as f32 * per_segment;
+        }
+        // The place that is left over repeats the last vertex.
+        for row in &mut weights {
+            row.0[VERTICES] = row.0[VERTICES - 1];
         }
         let mut points = [Row::splat(0.0); 3];
         for group in 0..PARTS / S::f32s::LEN {
@@ -443,8 +285,8 @@ impl<'a, 'm> Patch<'a, 'm> {
                 row.set(group, p + n * d);
             }
         }
-        if self.on_seam {
-            self.mend(reliefs, displacement, &weights, &mut points);
+        if self.cut.on_seam {
+            self.mend(door, &weights, &mut points);
         }
         points
     }
@@ -453,8 +295,7 @@ impl<'a, 'm> Patch<'a, 'm> {
     #[inline(never)]
     fn mend(
         &self,
-        reliefs: &Reliefs<'_, '_>,
-        displacement: &Displacement,
+        (reliefs, displacement): Door<'_, '_>,
         weights: &[Row; 2],
         points: &mut [Row; 3],
     ) {
@@ -489,9 +330,16 @@ impl<'a, 'm> Patch<'a, 'm> {
         let p = parts[0] + parts[1] + parts[2];
         let error = (parts[0].abs() + parts[1].abs() + parts[2].abs()) * gamma(7);
         let normal = (v1 - v0).as_dvec3().cross((v2 - v0).as_dvec3());
-        let normal = (normal.normalize_or_zero() * f64::from(self.front)).as_vec3();
+        // The side of the winding that is the front.
+        let winding = (self.p[1] - self.p[0]).cross(self.p[2] - self.p[0]);
+        let front = if winding.dot(self.n[0] + self.n[1] + self.n[2]) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        let normal = (normal.normalize_or_zero() * front).as_vec3();
         let [a, b, size] = micro.key.1.map(|i| i as f32);
-        let per_segment = 1.0 / (1 << self.segments_log2) as f32;
+        let per_segment = 1.0 / (1 << self.cut.segments_log2) as f32;
         let (w1, w2) = ((a + size * u) * per_segment, (b + size * v) * per_segment);
         let mut weights = [0.0; 3];
         for (k, w) in [1.0 - w1 - w2, w1, w2].into_iter().enumerate() {
@@ -533,62 +381,150 @@ pub struct MicroHit {
 /// What tracing cost.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FineCounters {
-    /// Parts cut up.
+    /// Boxes of sixteen parts looked at.
     pub parts: u64,
     /// Parts whose micro-triangles were made.
     pub leaves: u64,
+}
+
+/// Everything around a patch.
+pub type Door<'a, 'm> = (&'a Reliefs<'a, 'm>, &'a Displacement);
+
+/// Meets patches one after the other.
+pub struct Meeting<'a, 'm, 'c> {
+    /// What they are parts of.
+    pub mesh: &'a TriangleMesh,
+    /// What is laid on it.
+    pub door: Door<'a, 'm>,
+    /// Boxes seen so far.
+    pub nodes: &'c mut NodeCache,
+    /// Bytes that they may take.
+    pub budget: usize,
+    /// What it cost.
+    pub counters: FineCounters,
+}
+
+impl Meeting<'_, '_, '_> {
+    /// The hit on a triangle before `best`, if it is nearer; with `any`, whatever comes first.
+    #[inline(always)]
+    pub fn meet<S: Simd>(
+        &mut self,
+        simd: S,
+        (prim, cut): (u32, Cut),
+        ray: &FineRay,
+        (mut best, any): (Best, bool),
+    ) -> Best {
+        let (reliefs, displacement) = self.door;
+        let make = || Patch::new(self.mesh, reliefs, displacement, (prim, cut));
+        let mut patch = None;
+        let mut stack = [Part::NONE; STACK];
+        let mut depth = start(cut, &mut stack);
+        while depth > 0 {
+            depth -= 1;
+            let part = stack[depth];
+            if part.near > best.t {
+                continue;
+            }
+            if part.size.abs() == 4 {
+                self.counters.leaves += 1;
+                if patch.is_none() {
+                    patch = make();
+                }
+                let Some(patch) = &patch else { return best };
+                patch.meet_leaf(simd, self.door, ray, &part, &mut best);
+                if any && best.hit.is_some() {
+                    return best;
+                }
+                continue;
+            }
+            self.counters.parts += 1;
+            let key = (prim, [part.a, part.b, part.size]);
+            let mut near = Row::splat(0.0);
+            let met = if let Some(boxes) = self.nodes.get(key) {
+                ray.slabs.meets(simd, boxes, best.t, &mut near)
+            } else {
+                if patch.is_none() {
+                    patch = make();
+                }
+                let Some(patch) = &patch else { return best };
+                let boxes = patch.boxes(simd, self.door, &part);
+                self.nodes.put(key, &boxes, self.budget);
+                ray.slabs.meets(simd, &boxes, best.t, &mut near)
+            };
+            let first = depth;
+            let quarter = part.size / 4;
+            for i in ones(met) {
+                let i = i % PARTS;
+                let [a, b, s] = CUT[i].map(|x| x * quarter);
+                let child = Part {
+                    a: part.a + a,
+                    b: part.b + b,
+                    size: s,
+                    near: near.0[i],
+                };
+                let mut at = depth;
+                while at > first && stack[at - 1].near < child.near {
+                    stack[at] = stack[at - 1];
+                    at -= 1;
+                }
+                stack[at] = child;
+                depth += 1;
+            }
+        }
+        best
+    }
+}
+
+impl Part {
+    const NONE: Self = Self {
+        a: 0,
+        b: 0,
+        size: 0,
+        near: f32::NEG_INFINITY,
+    };
+}
+
+/// Puts the whole triangle on the stack, or its quarters if it would not fall into sixteenths down to four segments;
+/// returns the stack's depth.
+#[inline(always)]
+fn start(cut: Cut, stack: &mut [Part; STACK]) -> usize {
+    let size = 1 << cut.segments_log2;
+    let part = |[a, b, size]: [i32; 3]| Part {
+        a,
+        b,
+        size,
+        ..Part::NONE
+    };
+    if cut.segments_log2.is_multiple_of(2) {
+        stack[0] = part([0, 0, size]);
+        return 1;
+    }
+    let h = size / 2;
+    stack[0] = part([0, 0, h]);
+    stack[1] = part([h, 0, h]);
+    stack[2] = part([0, h, h]);
+    stack[3] = part([h, h, -h]);
+    4
+}
+
+/// The smallest and the largest of numbers that are not NaN, by halves, as vectors do it.
+#[inline(always)]
+fn extremes(row: &[f32; PARTS]) -> [f32; 2] {
+    let (mut low, mut high) = (*row, *row);
+    let mut half = PARTS / 2;
+    while half > 0 {
+        for i in 0..half {
+            let (a, b) = (low[i + half], high[i + half]);
+            low[i] = if a < low[i] { a } else { low[i] };
+            high[i] = if b > high[i] { b } else { high[i] };
+        }
+        half /= 2;
+    }
+    [low[0], high[0]]
 }
 
 /// `w0·x0 + w1·x1 + w2·x2`, in this order.
 #[inline(always)]
 fn sum<F: crate::math::Real>([w0, w1, w2]: [F; 3], [x0, x1, x2]: [f32; 3]) -> F {
     w0 * x0 + w1 * x1 + w2 * x2
-}
-
-/// Which of sixteen parts the ray may meet before `t_max`, as bits, and from where on.
-#[inline(always)]
-fn meets<S: Simd>(
-    simd: S,
-    ray: &FineRay,
-    seen: &Seen,
-    [a, b, size]: &[Row; 3],
-    [low, high]: [&Row; 2],
-    t_max: f32,
-    near: &mut Row,
-) -> u64 {
-    let mut bits = 0;
-    for group in 0..PARTS / S::f32s::LEN {
-        let (a, b, s) = (
-            a.get(simd, group),
-            b.get(simd, group),
-            size.get(simd, group),
-        );
-        let (low, high) = (low.get(simd, group), high.get(simd, group));
-        let one = a.splat(1.0);
-        let corners = [[a, b], [a + s, b], [a, b + s]];
-        let mut least = [one.splat(f32::INFINITY); 3];
-        let mut most = [one.splat(f32::NEG_INFINITY); 3];
-        for [w1, w2] in corners {
-            let w = [one - w1 - w2, w1, w2];
-            for axis in 0..3 {
-                let [p0, p1, p2] = seen.p;
-                let [n0, n1, n2] = seen.n;
-                let p = sum(w, [p0[axis], p1[axis], p2[axis]]);
-                let n = sum(w, [n0[axis], n1[axis], n2[axis]]);
-                let (x, y) = (p + n * low, p + n * high);
-                least[axis] = least[axis].smaller(x).smaller(y);
-                most[axis] = most[axis].larger(x).larger(y);
-            }
-        }
-        let margin: Wide<S> = one.splat(ray.margin);
-        let zero = one.splat(0.0);
-        let across =
-            least[0].le(margin) & most[0].ge(-margin) & least[1].le(margin) & most[1].ge(-margin);
-        let along = margin * ray.inv_along.abs();
-        let first = least[2] - along;
-        let met = across & first.le(one.splat(t_max)) & (most[2] + along).ge(zero);
-        near.set(group, first);
-        bits |= met.0.to_bitmask() << (group * S::f32s::LEN);
-    }
-    bits
 }

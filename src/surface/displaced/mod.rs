@@ -8,8 +8,9 @@
 //! - `charts`: which triangles are flat reliefs, and how fine the others are cut up
 //! - `flat`: where `n` is constant: the exact walk answers, nothing is cut up
 //! - `fine`: elsewhere: micro-triangles, made where rays come, from a tree that is nowhere stored
-//! - `ranges`: displacements in parts of triangles, kept for a while
+//! - `nodes`: boxes around parts of triangles, kept for a while
 //! - `trace`: what a ray meets
+//! - `smooth`: the surface between the micro-triangles, for measurements
 //!
 //! Source: surface and bounds after techniques of Thonat et al. 2021 (tessellation-free displacement),
 //! without its affine arithmetic, which an `n` that is not normalised makes unnecessary.
@@ -17,8 +18,9 @@
 mod charts;
 mod fine;
 mod flat;
-mod ranges;
+mod nodes;
 mod seams;
+mod smooth;
 mod trace;
 mod weld;
 
@@ -35,6 +37,7 @@ use crate::texture::Addressing;
 use charts::Shape;
 pub use seams::SeamReport;
 use seams::Seams;
+pub use smooth::{SmoothHit, SmoothPoint};
 pub use trace::{DisplacedMesh, Search, SurfaceHit, Tracer};
 
 /// How the reliefs of a scene are laid on its mesh.
@@ -106,12 +109,6 @@ impl Displacement {
             number: MADE.fetch_add(1, Ordering::Relaxed) + 1,
             prims,
         }
-    }
-
-    /// Whether no triangle is displaced.
-    #[must_use]
-    pub const fn is_empty(&self) -> bool {
-        self.prims.is_empty()
     }
 
     /// Whether the mesh has triangles that are not displaced.

@@ -133,15 +133,10 @@ impl Seams {
     }
 }
 
-/// Displacement of a material's relief.
+/// Displacement of a material's relief, as every micro-vertex takes it.
 fn at(reliefs: &Reliefs<'_, '_>, material: u16, uv: Vec2) -> f32 {
     let field = reliefs.fields[usize::from(material)].as_ref();
-    field.map_or(0.0, |field| displacement(field, uv))
-}
-
-/// Displacement at a texture coordinate, as every micro-vertex takes it.
-pub fn displacement(field: &ReliefField<'_>, uv: Vec2) -> f32 {
-    field.height.displacement(V2::from(uv))
+    field.map_or(0.0, |field| field.height.displacement(V2::from(uv)))
 }
 
 fn mean(sides: impl ExactSizeIterator<Item = f32>) -> f32 {

@@ -3,12 +3,13 @@
 use glam::Vec3;
 
 use super::charts::Shape;
-use super::fine::{Best, FineCounters, FineRay, Patch};
+use super::fine::{Best, Cut, FineCounters, FineRay, Meeting, Patch};
 use super::flat::FlatPrism;
-use super::ranges::RangeCache;
+use super::nodes::NodeCache;
 use super::{Displacement, Reliefs};
 use crate::geometry::{Ray, TriangleMesh};
 use crate::math::simd::{Kernel, Simd, SimdLevel};
+use crate::surface::SurfaceInteraction;
 use crate::surface::mapping::relief::{ReliefRay, Walk};
 
 /// A point of a displaced surface.
@@ -28,6 +29,17 @@ pub struct SurfaceHit {
     pub normal: Vec3,
 }
 
+impl SurfaceHit {
+    /// Puts the point in the place of the one on the mesh under it. The shading normal stays.
+    pub fn replace_point(&self, s: &mut SurfaceInteraction) {
+        let n = self.normal.abs();
+        s.p = self.p.into();
+        // As the bound along the normal, spread over the axes.
+        s.p_error = (n * (self.bound / n.length_squared())).into();
+        s.n_geo = self.normal.into();
+    }
+}
+
 /// What is asked for a ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Search {
@@ -42,8 +54,8 @@ pub enum Search {
 struct Asked {
     ray: Ray,
     best: Best,
-    /// Triangle of the micro-triangle that was met, with its segments.
-    fine: Option<(u32, u8)>,
+    /// Triangle of the micro-triangle that was met.
+    fine: Option<(u32, Cut)>,
     /// Triangle of the flat relief that was met, and the distance in doubles.
     flat: Option<(u32, f64)>,
 }
@@ -60,16 +72,35 @@ struct Job {
 }
 
 /// Traces rays against a displaced mesh. Keeps its lists, so that the steady state allocates nothing.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Tracer {
     asked: Vec<Asked>,
     jobs: Vec<Job>,
     rays: Vec<ReliefRay>,
     walks: Vec<Walk>,
-    ranges: RangeCache,
+    nodes: NodeCache,
+    /// Bytes that the boxes kept may take.
+    budget: usize,
     /// Steps of walks, and parts cut up or made, since the last [`Self::take_steps`].
     steps: u64,
 }
+
+impl Default for Tracer {
+    fn default() -> Self {
+        Self {
+            asked: Vec::new(),
+            jobs: Vec::new(),
+            rays: Vec::new(),
+            walks: Vec::new(),
+            nodes: NodeCache::default(),
+            budget: USUAL_BUDGET,
+            steps: 0,
+        }
+    }
+}
+
+/// Bytes that a tracer keeps boxes in unless told otherwise.
+const USUAL_BUDGET: usize = 64 << 20;
 
 /// What is traced.
 #[derive(Debug, Clone, Copy)]
@@ -82,7 +113,50 @@ pub struct DisplacedMesh<'a, 'm> {
     pub displacement: &'a Displacement,
 }
 
+impl DisplacedMesh<'_, '_> {
+    /// What a single ray meets before `t_max`.
+    #[must_use]
+    pub fn closest(
+        self,
+        tracer: &mut Tracer,
+        ray: &Ray,
+        t_max: f32,
+        level: SimdLevel,
+    ) -> Option<SurfaceHit> {
+        tracer.clear();
+        tracer.push(*ray, t_max);
+        tracer.run(self, Search::Closest, level);
+        tracer.hit(self, 0)
+    }
+
+    /// Whether a single ray meets anything before `t_max`.
+    #[must_use]
+    pub fn blocks(self, tracer: &mut Tracer, ray: &Ray, t_max: f32, level: SimdLevel) -> bool {
+        tracer.clear();
+        tracer.push(*ray, t_max);
+        tracer.run(self, Search::Any, level);
+        tracer.is_hit(0)
+    }
+}
+
 impl Tracer {
+    /// Sets how many bytes the boxes of parts may take that are kept for later rays. Less makes tracing slower and
+    /// changes nothing else.
+    pub const fn keep(&mut self, budget: usize) {
+        self.budget = budget;
+    }
+
+    /// Heap bytes of the boxes that are kept.
+    #[must_use]
+    pub const fn kept(&self) -> usize {
+        self.nodes.bytes()
+    }
+
+    /// Gives back what is kept for later rays.
+    pub fn forget(&mut self) {
+        self.nodes = NodeCache::default();
+    }
+
     /// Forgets all rays.
     pub fn clear(&mut self) {
         self.asked.clear();
@@ -109,7 +183,7 @@ impl Tracer {
     /// Finds what all rays meet.
     pub fn run(&mut self, mesh: DisplacedMesh<'_, '_>, search: Search, level: SimdLevel) {
         self.jobs.clear();
-        self.ranges.belong_to(mesh.displacement.number);
+        self.nodes.prepare(mesh.displacement.number, self.budget);
         level.run_or_plain(Visit {
             mesh,
             search,
@@ -188,14 +262,21 @@ impl Kernel for Visit<'_, '_, '_> {
             reliefs,
             displacement,
         } = self.mesh;
-        let mut counters = FineCounters::default();
         let mut last_prism: Option<(u32, FlatPrism<'_, '_>)> = None;
         let Tracer {
             asked,
             jobs,
-            ranges,
+            nodes,
+            budget,
             ..
         } = self.tracer;
+        let mut meeting = Meeting {
+            mesh,
+            door: (&reliefs, displacement),
+            nodes,
+            budget: *budget,
+            counters: FineCounters::default(),
+        };
         for (index, asked) in asked.iter_mut().enumerate() {
             let mut fine_ray = None;
             let ray = asked.ray;
@@ -226,20 +307,13 @@ impl Kernel for Visit<'_, '_, '_> {
                             });
                         }
                     }
-                    Shape::Fine { segments_log2 } => {
+                    Shape::Fine(cut) => {
                         let ray = fine_ray
                             .get_or_insert_with(|| FineRay::new(&ray, displacement.tree.reach()));
-                        let this = (prim, segments_log2);
-                        let Some(patch) = Patch::new(mesh, &reliefs, displacement, this) else {
-                            continue;
-                        };
                         let known = asked.best.hit.map(|hit| hit.key);
-                        let door = (&reliefs, displacement);
-                        let best =
-                            patch.meet(simd, door, ray, (asked.best, any), (ranges, &mut counters));
-                        asked.best = best;
-                        if best.hit.map(|hit| hit.key) != known {
-                            asked.fine = Some(this);
+                        asked.best = meeting.meet(simd, (prim, cut), ray, (asked.best, any));
+                        if asked.best.hit.map(|hit| hit.key) != known {
+                            asked.fine = Some((prim, cut));
                         }
                     }
                 }
@@ -248,6 +322,7 @@ impl Kernel for Visit<'_, '_, '_> {
                 }
             }
         }
-        self.tracer.steps += counters.parts + counters.leaves;
+        let FineCounters { parts, leaves } = meeting.counters;
+        self.tracer.steps += parts + leaves;
     }
 }

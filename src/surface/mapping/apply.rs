@@ -75,7 +75,7 @@ impl<'a> MaterialMapping<'a> {
     #[must_use]
     pub fn choose(settings: &MappingSettings, maps: &MaterialMaps<'a>) -> Self {
         // Amplitude 0 must be the picture of `none` to the bit, so it runs the same code.
-        let height = maps.height.filter(|h| h.scale != 0.0 || h.offset != 0.0);
+        let height = maps.height.filter(BoundHeight::moves);
         let tilting_height = height.filter(|h| settings.use_height && h.scale != 0.0);
         let bent = |n: &BoundNormal<'_>| settings.use_normal && n.strength != 0.0;
         let normal = maps.normal.filter(bent);

@@ -59,6 +59,12 @@ impl BoundHeight<'_> {
         )
     }
 
+    /// Whether anything is displaced at all.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        self.scale != 0.0 || self.offset != 0.0
+    }
+
     /// Displacement along the normal at `uv`, internal units; positive is outwards.
     #[inline(always)]
     #[must_use]

@@ -77,6 +77,9 @@ pub struct MappingSettings {
     /// Whether true displacement takes the mean height along edges at which texture coordinates jump, so that
     /// no crack opens there.
     pub weld_seams: bool,
+    /// Most mebibytes, of all workers together, for boxes around parts of displaced triangles, 0…1,048,576.
+    /// Fewer make tracing slower and change no pixel.
+    pub displacement_memory: u32,
     /// What searches take.
     pub search: SearchSettings,
 }
@@ -118,12 +121,20 @@ impl Default for SearchSettings {
 }
 
 impl MappingSettings {
-    /// Whether the extremes of height maps are asked for: the exact walk, and every relief that shadows
-    /// itself.
+    /// Most mebibytes that `displacement_memory` may be.
+    pub const MAX_DISPLACEMENT_MEMORY: u32 = 1 << 20;
+
+    /// Whether height maps are geometry of their own.
+    #[must_use]
+    pub const fn displaces(&self) -> bool {
+        self.use_height && matches!(self.method, Method::Displacement)
+    }
+
+    /// Whether the extremes of height maps are asked for: the exact walk, every relief that shadows itself,
+    /// and displaced surfaces.
     #[must_use]
     pub const fn needs_pyramid(&self) -> bool {
-        let is_displaced = self.use_height && matches!(self.method, Method::Displacement);
-        is_displaced
+        self.displaces()
             || self.use_parallax
                 && (matches!(self.method, Method::Exact)
                     || self.method.searches() && self.search.self_shadow)
@@ -148,6 +159,7 @@ impl Default for MappingSettings {
             use_normal: true,
             use_parallax: true,
             weld_seams: true,
+            displacement_memory: 256,
             search: SearchSettings::default(),
         }
     }

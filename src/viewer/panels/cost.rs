@@ -52,6 +52,7 @@ pub(super) fn cost_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
             scene.images.iter().map(|i| i.search_bytes()).sum(),
         ),
         ("Displacement", displaced.map_or(0, |d| d.bytes())),
+        ("Parts of it kept", stats.kept_bytes),
     ];
     let mebibytes = |n: usize| format!("{:.2} MiB", n as f64 / f64::from(1 << 20));
     rows_ui(

@@ -154,6 +154,16 @@ fn displacement_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
         return;
     };
     let [flat, fine] = displacement.kinds();
+    if fine > 0 {
+        let original = panel.doc.original.mapping.displacement_memory;
+        number_ui(
+            ui,
+            Caption::named("Memory, MiB", "Displacement memory"),
+            &Number::within(0.0..=65_536.0, 4.0),
+            &mut panel.doc.settings.mapping.displacement_memory,
+            Some(&original),
+        );
+    }
     let seams = displacement.seams();
     let gap = panel
         .doc

@@ -341,6 +341,7 @@ impl Coordinator {
             converged,
             pass_millis: job.pass_millis,
             stage_millis: renderer.stage_millis,
+            kept_bytes: renderer.first.kept_bytes(),
             pass_rays: job.pass_rays,
             counters: renderer.counters(),
             reshaded: renderer.first.reuses_hits(),

@@ -49,6 +49,10 @@ pub trait PassRenderer: Send {
     fn is_converged(&self) -> bool;
     /// See [`Progressive::counters`].
     fn counters(&self) -> Counters;
+    /// See [`Progressive::kept_bytes`].
+    fn kept_bytes(&self) -> usize {
+        0
+    }
     /// See [`Progressive::reuses_hits`].
     fn reuses_hits(&self) -> bool;
     /// See [`Progressive::threads`].
@@ -86,6 +90,9 @@ impl PassRenderer for Progressive {
     }
     fn counters(&self) -> Counters {
         Self::counters(self)
+    }
+    fn kept_bytes(&self) -> usize {
+        Self::kept_bytes(self)
     }
     fn reuses_hits(&self) -> bool {
         Self::reuses_hits(self)
@@ -197,6 +204,8 @@ pub struct FrameStats {
     /// Thread time in the stages of the last full pass of the first picture, ms: tracing, perturbing, shading,
     /// putting into the film.
     pub stage_millis: [f64; 4],
+    /// Bytes that workers keep of displaced triangles.
+    pub kept_bytes: usize,
     /// Rays of all kinds in the last pass.
     pub pass_rays: u64,
     /// Exact counts of the whole picture so far.

@@ -115,18 +115,18 @@ fn sheet() -> TriangleMesh {
     mesh
 }
 
-/// Closed or not, and its name.
-fn meshes() -> Vec<(&'static str, bool, TriangleMesh)> {
+/// All but the sheet are closed.
+fn meshes() -> Vec<(&'static str, TriangleMesh)> {
     let round = |u: f32, v: f32| Vec2::new(u * 2.0, v);
     let jumping = |u: f32, v: f32| Vec2::new(0.1 + u * 1.83, v * 0.77);
     let mirrored = |u: f32, v: f32| Vec2::new((u - 0.5).abs() * 2.0, v);
     vec![
-        ("torus", true, torus(12, 8, round)),
-        ("finer torus", true, torus(24, 12, round)),
-        ("seamed torus", true, torus(12, 8, jumping)),
-        ("mirrored torus", true, torus(12, 8, mirrored)),
-        ("cube", true, cube()),
-        ("sheet", false, sheet()),
+        ("torus", torus(12, 8, round)),
+        ("finer torus", torus(24, 12, round)),
+        ("seamed torus", torus(12, 8, jumping)),
+        ("mirrored torus", torus(12, 8, mirrored)),
+        ("cube", cube()),
+        ("sheet", sheet()),
     ]
 }
 
@@ -280,8 +280,8 @@ fn any_ray(random: &mut Random) -> Ray {
     }
 }
 
-#[test]
-fn displaced_surfaces_are_those_of_explicit_tessellation() {
+/// All [`meshes`] displaced: calls `look` with their names and the map.
+fn for_each_displaced(look: impl Fn(&'static str, DisplacedMesh<'_, '_>, &HeightMap)) {
     let map = map();
     let pyramid = HeightPyramid::new(&map, Wrap::Repeat);
     let height = BoundHeight::new(&map, addressing(), AMPLITUDE, -AMPLITUDE * MIDLEVEL);
@@ -290,22 +290,30 @@ fn displaced_surfaces_are_those_of_explicit_tessellation() {
         fields: &fields,
         weld_seams: true,
     };
-    for (name, _, mesh) in meshes() {
+    for (name, mesh) in meshes() {
         let displacement = Displacement::new(&mesh, &reliefs);
+        let displaced = DisplacedMesh {
+            mesh: &mesh,
+            reliefs,
+            displacement: &displacement,
+        };
+        look(name, displaced, &map);
+    }
+}
+
+#[test]
+fn displaced_surfaces_are_those_of_explicit_tessellation() {
+    for_each_displaced(|name, displaced, map| {
+        let (mesh, displacement) = (displaced.mesh, displaced.displacement);
         let [flat, fine] = displacement.kinds();
         assert!(
             (flat == 0) == (name != "sheet") && flat + fine == mesh.len(),
             "{name}"
         );
         let is_flat = flat > 0;
-        let displaced = DisplacedMesh {
-            mesh: &mesh,
-            reliefs,
-            displacement: &displacement,
-        };
         // A flat relief is bilinear: cut it finely.
-        let segments = if is_flat { 128 } else { segments(&mesh) };
-        let explicit = Explicit::new(&mesh, &map).cut(segments);
+        let segments = if is_flat { 128 } else { segments(mesh) };
+        let explicit = Explicit::new(mesh, map).cut(segments);
         let tree = Bvh::build(&explicit);
         let tolerance = if is_flat { 1e-3 } else { 2e-5 };
         let mut random = Random(0x7E55);
@@ -341,7 +349,7 @@ fn displaced_surfaces_are_those_of_explicit_tessellation() {
             );
         }
         assert!(hits > ray_count() / 4, "{name}: {hits} hits");
-    }
+    });
 }
 
 fn trace(mesh: DisplacedMesh<'_, '_>, rays: &[Ray], level: SimdLevel) -> Vec<Option<SurfaceHit>> {
@@ -355,25 +363,12 @@ fn trace(mesh: DisplacedMesh<'_, '_>, rays: &[Ray], level: SimdLevel) -> Vec<Opt
 
 #[test]
 fn closed_displaced_surfaces_let_no_ray_out() {
-    let map = map();
-    let pyramid = HeightPyramid::new(&map, Wrap::Repeat);
-    let height = BoundHeight::new(&map, addressing(), AMPLITUDE, -AMPLITUDE * MIDLEVEL);
-    let fields = [ReliefField::new(height, &pyramid)];
-    let reliefs = Reliefs {
-        fields: &fields,
-        weld_seams: true,
-    };
-    for (name, closed, mesh) in meshes() {
-        if !closed {
-            continue;
+    for_each_displaced(|name, displaced, map| {
+        if name == "sheet" {
+            return;
         }
-        let displacement = Displacement::new(&mesh, &reliefs);
-        let displaced = DisplacedMesh {
-            mesh: &mesh,
-            reliefs,
-            displacement: &displacement,
-        };
-        let explicit = Explicit::new(&mesh, &map).cut(segments(&mesh));
+        let mesh = displaced.mesh;
+        let explicit = Explicit::new(mesh, map).cut(segments(mesh));
         let mut random = Random(0x1EAC);
         // From inside, at vertices and edges of the micro-triangles: where leaks are.
         let inside = if name == "cube" { Vec3::ZERO } else { Vec3::X };
@@ -391,26 +386,12 @@ fn closed_displaced_surfaces_let_no_ray_out() {
         let leaks = trace(displaced, &rays, SimdLevel::best());
         let leaks = leaks.iter().filter(|hit| hit.is_none()).count();
         assert_eq!(leaks, 0, "{name}");
-    }
+    });
 }
 
 #[test]
 fn every_level_meets_the_same_points() {
-    let map = map();
-    let pyramid = HeightPyramid::new(&map, Wrap::Repeat);
-    let height = BoundHeight::new(&map, addressing(), AMPLITUDE, -AMPLITUDE * MIDLEVEL);
-    let fields = [ReliefField::new(height, &pyramid)];
-    let reliefs = Reliefs {
-        fields: &fields,
-        weld_seams: true,
-    };
-    for (name, _, mesh) in meshes() {
-        let displacement = Displacement::new(&mesh, &reliefs);
-        let displaced = DisplacedMesh {
-            mesh: &mesh,
-            reliefs,
-            displacement: &displacement,
-        };
+    for_each_displaced(|name, displaced, _| {
         let mut random = Random(0x1E7E);
         let rays: Vec<Ray> = (0..500).map(|_| any_ray(&mut random)).collect();
         let plain = trace(displaced, &rays, SimdLevel::Scalar);
@@ -429,5 +410,66 @@ fn every_level_meets_the_same_points() {
             tracer.run(displaced, Search::Any, SimdLevel::best());
             assert_eq!(tracer.is_hit(0), hit.is_some(), "{name}");
         }
-    }
+    });
+}
+
+#[test]
+fn the_memory_for_boxes_changes_no_hit() {
+    for_each_displaced(|name, displaced, _| {
+        let mut random = Random(0xB0D6);
+        let rays: Vec<Ray> = (0..500).map(|_| any_ray(&mut random)).collect();
+        let plain = trace(displaced, &rays, SimdLevel::best());
+        // One tracer, so that what others left there is met again.
+        let mut tracer = Tracer::default();
+        for bytes in [0, 1 << 20, 0, 1 << 17] {
+            tracer.keep(bytes);
+            tracer.clear();
+            rays.iter().for_each(|ray| tracer.push(*ray, f32::INFINITY));
+            tracer.run(displaced, Search::Closest, SimdLevel::best());
+            let hits: Vec<_> = (0..rays.len()).map(|i| tracer.hit(displaced, i)).collect();
+            assert_eq!(hits, plain, "{name}, {bytes} bytes");
+            assert!(tracer.kept() <= bytes.max(1 << 17), "{name}, {bytes} bytes");
+        }
+        tracer.forget();
+        assert_eq!(tracer.kept(), 0);
+    });
+}
+
+#[test]
+fn points_are_followed_to_the_surface_between_micro_triangles() {
+    for_each_displaced(|name, displaced, map| {
+        let explicit = Explicit::new(displaced.mesh, map);
+        let mut random = Random(0x5300);
+        let (mut moved, mut hits, mut lost) = (0.0_f64, 0_u32, 0_u32);
+        for _ in 0..500 {
+            let ray = any_ray(&mut random);
+            let Some(hit) = trace(displaced, &[ray], SimdLevel::best())[0] else {
+                continue;
+            };
+            let Some(found) = displaced.smooth_hit(&ray, &hit) else {
+                lost += 1;
+                continue;
+            };
+            let (p, origin) = (found.point.p, ray.origin.as_dvec3());
+            let off = (p - origin).cross(ray.dir.as_dvec3()).length();
+            // Beside seams heights are means, which the surface of one triangle does not have.
+            let is_inside =
+                hit.weights[0].min(hit.weights[1]) > 0.1 && hit.weights[0] + hit.weights[1] < 0.9;
+            assert!(off < 1e-8, "{name}: {off} beside {ray:?}");
+            if is_inside {
+                hits += 1;
+                moved += found.moved_texels;
+                let vertices = displaced.mesh.indices[hit.prim as usize];
+                let at = displaced.smooth_point(hit.prim, hit.weights.map(f64::from));
+                let [b1, b2] = hit.weights.map(f64::from);
+                let same = explicit.point(vertices, [1.0 - b1 - b2, b1, b2]);
+                let at = at.expect("it has a relief").p;
+                assert!(at.distance(same) < 1e-6, "{name}: {at} is not {same}");
+                assert!(found.normal.dot(hit.normal.as_dvec3()) > 0.0, "{name}");
+            }
+        }
+        assert!(hits > 50 && lost < hits / 4, "{name}: {hits}, {lost} lost");
+        let mean = moved / f64::from(hits);
+        assert!(mean < 0.1, "{name}: {mean} texels on the average");
+    });
 }

@@ -7,7 +7,7 @@ use crate::surface::SurfaceInteraction;
 
 /// Shadow walks start this share of the relief's thickness above it, 2⁻²⁰: enough that no rounding of the
 /// start shadows it, a thousandth of a step of 10 bits.
-const LIFT: f64 = 1.0 / 1_048_576.0;
+pub const LIFT: f64 = 1.0 / 1_048_576.0;
 
 /// A light lower over the smooth surface than this cosine is below every relief.
 const MIN_LIGHT_COS: f32 = 1e-6;

@@ -205,7 +205,7 @@ impl<'a> ReliefField<'a> {
                 return self.range;
             }
             widest = widest.max((last - first + 1) as u32);
-            cells[k] = [first, last].map(|cell| cell.rem_euclid(i64::from(n)) as u32);
+            cells[k] = [first, last].map(|cell| wrapped(cell, n));
         }
         let level = widest.next_power_of_two().ilog2();
         for k in 0..2 {
@@ -488,6 +488,17 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
         let tiles = 2.0 + (ray.rate[0] * ray.end / w).abs() + (ray.rate[1] * ray.end / h).abs();
         let cap = 64.0 + 4.0 * (w + h) * tiles;
         cap.min(STEP_CAP) as u32
+    }
+}
+
+/// The cell of a picture of `n` that repeats; most have a power of two, where no division is needed.
+#[inline(always)]
+fn wrapped(cell: i64, n: u32) -> u32 {
+    let n = i64::from(n);
+    if n & (n - 1) == 0 {
+        (cell & (n - 1)) as u32
+    } else {
+        cell.rem_euclid(n) as u32
     }
 }
 

@@ -1,0 +1,137 @@
+//! Boxes around parts of displaced triangles, kept for the rays that follow.
+
+use crate::math::lanes::Lanes;
+
+/// Parts that a part falls into.
+pub const PARTS: usize = 16;
+
+/// A number for each part.
+pub type Row = Lanes<f32, PARTS>;
+
+/// Boxes of the parts that a part falls into: `[axis][lower, upper]`.
+pub type Boxes = [[Row; 2]; 3];
+
+/// Which part of which triangle: anchor and signed size in segments.
+pub type PartKey = (u32, [i32; 3]);
+
+/// No triangle has as many.
+const NO_KEY: PartKey = (u32::MAX, [0; 3]);
+
+/// Entries to begin with.
+const FEW: usize = 1 << 8;
+
+/// Boxes of parts that rays came by. Every box is what would be worked out again, so that what is forgotten changes
+/// no pixel.
+#[derive(Debug, Default)]
+pub struct NodeCache {
+    /// The displacement that it belongs to.
+    owner: u64,
+    /// Empty until first used, then a power of two.
+    entries: Vec<(PartKey, Boxes)>,
+    /// Entries filled since the table grew.
+    filled: usize,
+}
+
+impl NodeCache {
+    /// Forgets what belongs to another displacement, and what takes more than `budget` bytes; a few boxes are always
+    /// kept.
+    pub fn prepare(&mut self, owner: u64, budget: usize) {
+        if self.owner != owner || self.bytes() > budget && self.entries.len() > FEW {
+            *self = Self {
+                owner,
+                ..Self::default()
+            };
+        }
+    }
+
+    /// Heap bytes.
+    pub const fn bytes(&self) -> usize {
+        self.entries.capacity() * size_of::<(PartKey, Boxes)>()
+    }
+
+    /// The boxes of a part, if they are known.
+    #[inline(always)]
+    pub fn get(&self, key: PartKey) -> Option<&Boxes> {
+        let (at, boxes) = self.entries.get(place(key, self.entries.len()))?;
+        (*at == key).then_some(boxes)
+    }
+
+    /// Keeps the boxes of a part, perhaps in the place of another's, in at most `budget` bytes.
+    #[inline(never)]
+    pub fn put(&mut self, key: PartKey, boxes: &Boxes, budget: usize) {
+        // Growing is worth its while once about half of the places have been taken.
+        if 2 * self.filled >= self.entries.len() {
+            let size = (2 * self.entries.len()).max(FEW);
+            if size == FEW || size * size_of::<(PartKey, Boxes)>() <= budget {
+                let empty = (NO_KEY, [[Row::splat(0.0); 2]; 3]);
+                let old = std::mem::replace(&mut self.entries, vec![empty; size]);
+                self.filled = 0;
+                for (key, boxes) in old {
+                    if key != NO_KEY {
+                        self.entries[place(key, size)] = (key, boxes);
+                        self.filled += 1;
+                    }
+                }
+            }
+        }
+        let entry = place(key, self.entries.len());
+        self.entries[entry] = (key, *boxes);
+        self.filled += 1;
+    }
+}
+
+/// Where a part is kept among `entries`.
+#[inline(always)]
+const fn place((prim, [a, b, size]): PartKey, entries: usize) -> usize {
+    let mut hash = prim.wrapping_mul(0x9e37_79b1);
+    hash = (hash ^ a as u32).wrapping_mul(0x85eb_ca6b);
+    hash = (hash ^ b as u32).wrapping_mul(0xc2b2_ae35);
+    hash = (hash ^ size as u32).wrapping_mul(0x27d4_eb2f);
+    (hash ^ hash >> 15) as usize & entries.wrapping_sub(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MUCH: usize = 1 << 24;
+
+    fn boxes(x: f32) -> Boxes {
+        [[Row::splat(x); 2]; 3]
+    }
+
+    #[test]
+    fn boxes_are_kept_until_others_take_their_place_or_the_owner_changes() {
+        let mut cache = NodeCache::default();
+        cache.prepare(1, MUCH);
+        let key = (7, [4, 8, 16]);
+        assert!(cache.get(key).is_none());
+        cache.put(key, &boxes(3.0), MUCH);
+        assert_eq!(cache.get(key).expect("kept")[0][0].0[5], 3.0);
+        assert!(cache.get((7, [4, 8, -16])).is_none());
+        cache.prepare(1, MUCH);
+        assert!(cache.get(key).is_some());
+        cache.prepare(2, MUCH);
+        assert!(cache.get(key).is_none());
+    }
+
+    #[test]
+    fn it_grows_as_far_as_the_budget_allows_and_answers_rightly_beyond() {
+        let budget = 1 << 20;
+        let mut cache = NodeCache::default();
+        cache.prepare(1, budget);
+        for round in 0..2 {
+            for i in 0..20_000_u32 {
+                let key = (i, [0, 0, 16]);
+                if let Some(found) = cache.get(key) {
+                    assert_eq!(found[2][1].0[0], i as f32, "round {round}");
+                }
+                cache.put(key, &boxes(i as f32), budget);
+                assert!(cache.get(key).is_some());
+            }
+        }
+        assert!(cache.bytes() <= budget && cache.bytes() > budget / 4);
+        cache.prepare(1, budget / 8);
+        assert_eq!(cache.bytes(), 0);
+    }
+}
