@@ -48,7 +48,8 @@ fn reference() -> Snapshot {
 }
 
 fn swept(snapshot: Snapshot, parts: (&Plan, Option<Shard>), threads: usize) -> Record {
-    let mut subject = Subject::new(snapshot, Truth::default()).expect("there is a relief");
+    let truth = Truth::suiting(&snapshot);
+    let mut subject = Subject::new(snapshot, truth).expect("there is a relief");
     let watch = Watch {
         stop: &|| false,
         reached: &|_, _| {},
@@ -139,6 +140,43 @@ fn a_stopped_sweep_keeps_what_is_done() {
     );
     assert!(record.notes()[0].contains("stopped"));
     assert!(page(&record).contains("the sweep was stopped"));
+}
+
+#[test]
+fn on_a_curved_mesh_the_displaced_surface_is_the_truth() {
+    let loaded = reliefscope::scene::open(Path::new("torus"), &LoadOptions::default());
+    let loaded = loaded.expect("it is built in");
+    let torus = Snapshot {
+        scene: loaded.scene,
+        size: [64, 40],
+        settings: std::sync::Arc::new(loaded.settings),
+    };
+    assert_eq!(Truth::suiting(&torus), Truth::Displaced);
+    assert_eq!(Truth::suiting(&waves()), Truth::Walk);
+    let plan = Plan {
+        samples: 1,
+        eight_bits: false,
+        ..tiny(&[Method::None, Method::Exact, Method::Displacement])
+    };
+    let record = swept(torus, (&plan, None), 0);
+    let of = |method: Method, angle: f64| -> &Cell {
+        let is = |c: &&Cell| c.variant.method == method && c.angle_deg == angle;
+        record.cells.iter().find(is).expect("it was measured")
+    };
+    for &angle in &plan.angles_deg {
+        let [none, exact, displaced] = [Method::None, Method::Exact, Method::Displacement]
+            .map(|method| &of(method, angle).geometry);
+        let texels = [none, exact, displaced].map(|g| g.uv_texels.p50);
+        // The micro-triangles are half a texel wide, and they are all that it is off by.
+        assert!(displaced.uv_texels.p95 < 0.5, "{angle}: {displaced:?}");
+        assert!(texels[1] < 0.5 * texels[0], "{angle}: {texels:?}");
+        assert_eq!(displaced.silhouette_iou, Some(1.0), "{angle}");
+        let flat = none.silhouette_iou.expect("the truth has an outline");
+        assert!(flat > 0.8 && flat <= 1.0, "{angle}: {flat}");
+        assert!(displaced.shadow_disagreement < none.shadow_disagreement);
+    }
+    let doubt = record.views.iter().map(|view| view.truth_doubt_texels);
+    assert!(doubt.fold(0.0, f64::max) < 1e-3);
 }
 
 #[test]

@@ -21,7 +21,8 @@ pub(super) fn sweep(
         path: options.scene.input.clone(),
         source,
     };
-    let mut subject = Subject::new(snapshot, Truth::default()).map_err(failed)?;
+    let truth = Truth::suiting(&snapshot);
+    let mut subject = Subject::new(snapshot, truth).map_err(failed)?;
     let progress = Progress::counting(1, "cells");
     let asked = Cell::new(0);
     let watch = Watch {

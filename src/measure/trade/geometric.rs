@@ -3,12 +3,13 @@
 use glam::{DVec3, Vec3};
 
 use super::sights::{Sight, Sights};
-use super::truth::{Landing, Truth};
+use super::truth::{Landing, Truth, is_behind_relief};
 use super::{GeometricErrors, Stats};
+use crate::geometry::triangle::Watertight;
 use crate::geometry::{Ray, offset_by_bound};
 use crate::math::{V2, V3};
 use crate::render::{Frame, FrameLight, FrameLightKind};
-use crate::surface::displaced::{Search, Tracer};
+use crate::surface::displaced::Tracer;
 use crate::surface::mapping::relief::is_shadowed;
 use crate::surface::{SurfaceInteraction, uv_at};
 
@@ -31,9 +32,10 @@ impl<'a> TrueView<'a> {
     /// Follows the rays of a frame that was made with the truth's settings.
     #[must_use]
     pub fn new(frame: &'a Frame<'a>, truth: Truth, sights: &Sights) -> Self {
+        let mut tracer = Tracer::default();
         let land = |sight: &Sight| {
-            let field = frame.materials[sight.material].mapping.self_shadow()?;
-            Some((*sight, truth.landing(field, &sight.facet)?))
+            let landing = truth.landing(frame, sight, &mut tracer)?;
+            Some((*sight, landing))
         };
         let landed: Vec<_> = sights.relief.iter().filter_map(land).collect();
         let doubt = landed.iter().map(|(_, landing)| landing.doubt_texels);
@@ -48,7 +50,7 @@ impl<'a> TrueView<'a> {
         view.lit = view
             .sights
             .iter()
-            .map(|seen| view.truly_lit(seen))
+            .map(|seen| view.truly_lit(seen, &mut tracer))
             .collect();
         view
     }
@@ -73,13 +75,14 @@ impl<'a> TrueView<'a> {
     pub fn errors(&self, frame: &Frame<'_>, outline: Option<&[bool]>) -> GeometricErrors {
         let (mut uv, mut depth, mut normal) = (Vec::new(), Vec::new(), Vec::new());
         let (mut asked, mut wrong) = (0_u64, 0_u64);
+        let mut tracer = Tracer::default();
         for ((sight, landing), truly_lit) in self.sights.iter().zip(&self.lit) {
-            let Some(field) = self.frame.materials[sight.material].mapping.self_shadow() else {
+            let Some(field) = self.frame.materials[sight.material].field() else {
                 continue;
             };
             let mut s = sight.surface;
             if frame.displaced.is_some() {
-                displaced(frame, &mut s);
+                displaced(frame, &mut s, &mut tracer);
             } else {
                 frame.materials[sight.material].mapping.apply(&mut s, true);
             }
@@ -93,7 +96,9 @@ impl<'a> TrueView<'a> {
             normal.push(angle_deg(Vec3::from(s.n_shade).as_dvec3(), landing.normal));
             for (light, &truly) in frame.lights.iter().zip(truly_lit) {
                 asked += 1;
-                wrong += u64::from(is_lit(frame, sight.material, &s, light) != truly);
+                let lit = is_lit(frame, sight.material, &s, light, &mut tracer)
+                    && (frame.displaced.is_some() || !self.is_behind_mesh(sight, light));
+                wrong += u64::from(lit != truly);
             }
         }
         let over = uv.iter().filter(|&&e| e > WRONG_TEXEL).count();
@@ -107,27 +112,59 @@ impl<'a> TrueView<'a> {
         }
     }
 
-    /// Which lights reach a true landing, the mesh's own shadows left out.
-    fn truly_lit(&self, (sight, landing): &(Sight, Landing)) -> Vec<bool> {
-        let field = self.frame.materials[sight.material].mapping.self_shadow();
+    /// Which lights reach a true landing.
+    fn truly_lit(&self, (sight, landing): &(Sight, Landing), tracer: &mut Tracer) -> Vec<bool> {
         let lit = |light: &FrameLight| {
             let wi = towards(light, landing.p);
             let faces = wi.dot(sight.facet.n_geo) > 0.0 && wi.dot(landing.normal) > 0.0;
-            let hides = |field| self.truth.is_shadowed(field, &sight.facet, landing, wi);
-            faces && !(self.frame.shadows && field.is_some_and(hides))
+            let distance = distance(light, landing.p.as_vec3());
+            let hides = |tracer| {
+                let seen = (sight, landing);
+                self.truth
+                    .is_shadowed(self.frame, seen, (wi, distance), tracer)
+            };
+            faces && !(self.frame.shadows && hides(&mut *tracer))
         };
         self.frame.lights.iter().map(lit).collect()
+    }
+
+    /// Whether the mesh keeps a light from a place on it. Over flat charts nobody asks: the truth there knows of no
+    /// other parts of the mesh.
+    fn is_behind_mesh(&self, sight: &Sight, light: &FrameLight) -> bool {
+        if !self.truth.moves_outlines() || !self.frame.shadows {
+            return false;
+        }
+        let s = &sight.surface;
+        let wi = V3::from(towards(light, Vec3::from(s.p).as_dvec3()).as_vec3());
+        let bound = s.n_geo.abs().dot(s.p_error);
+        let ray = Ray {
+            origin: offset_by_bound(s.p, bound, s.n_geo, wi).into(),
+            dir: wi.into(),
+        };
+        let end = distance(light, s.p.into());
+        let solid = |_: u32, _: f32, _: f32| true;
+        let bvh = self.frame.bvh;
+        bvh.occluded::<Watertight, _>(&ray, end, &solid)
     }
 }
 
 /// Whether a light reaches the place that a method shows, the mesh's own shadows left out.
-fn is_lit(frame: &Frame<'_>, material: usize, s: &SurfaceInteraction, light: &FrameLight) -> bool {
+fn is_lit(
+    frame: &Frame<'_>,
+    material: usize,
+    s: &SurfaceInteraction,
+    light: &FrameLight,
+    tracer: &mut Tracer,
+) -> bool {
     let wi = V3::from(towards(light, Vec3::from(s.p).as_dvec3()).as_vec3());
     if !(wi.dot(s.n_geo) > 0.0 && wi.dot(s.n_shade) > 0.0) {
         return false;
     }
     if frame.displaced.is_some() {
-        return !(frame.shadows && is_behind_relief(frame, s, light, wi));
+        let (p, n) = (Vec3::from(s.p), Vec3::from(s.n_geo));
+        let point = (p, n, s.n_geo.abs().dot(s.p_error));
+        let light = (wi.into(), distance(light, p));
+        return !(frame.shadows && is_behind_relief(frame, point, light, tracer));
     }
     let Some(field) = frame.materials[material].mapping.self_shadow() else {
         return true;
@@ -137,46 +174,29 @@ fn is_lit(frame: &Frame<'_>, material: usize, s: &SurfaceInteraction, light: &Fr
 }
 
 /// Moves a point to where its view ray meets the displaced surface.
-fn displaced(frame: &Frame<'_>, s: &mut SurfaceInteraction) {
+fn displaced(frame: &Frame<'_>, s: &mut SurfaceInteraction, tracer: &mut Tracer) {
     let Some(relief) = &frame.displaced else {
         return;
     };
-    let mesh = relief.mesh(frame.mesh);
-    let mut tracer = Tracer::default();
     let ray = Ray {
         origin: frame.camera.origin,
         dir: (-s.wo).into(),
     };
-    tracer.push(ray, f32::INFINITY);
-    tracer.run(mesh, Search::Closest, frame.level);
-    if let Some(hit) = tracer.hit(mesh, 0) {
+    let mesh = relief.mesh(frame.mesh);
+    if let Some(hit) = mesh.closest(tracer, &ray, f32::INFINITY, frame.level) {
         let [b1, b2] = hit.weights;
         s.uv = V2::from(uv_at(frame.mesh, hit.prim, b1, b2));
-        s.p = hit.p.into();
-        s.p_error = (hit.normal.abs() * hit.bound).into();
-        s.n_geo = hit.normal.into();
+        hit.replace_point(s);
         s.n_shade = s.n_geo;
     }
 }
 
-/// Whether the displaced surface hides a light from a point of it.
-fn is_behind_relief(frame: &Frame<'_>, s: &SurfaceInteraction, light: &FrameLight, wi: V3) -> bool {
-    let Some(relief) = &frame.displaced else {
-        return false;
-    };
-    let distance = match light.kind {
+/// How far away a light is.
+fn distance(light: &FrameLight, p: Vec3) -> f32 {
+    match light.kind {
         FrameLightKind::Directional(_) => f32::INFINITY,
-        FrameLightKind::Point(place, _) => place.distance(s.p.into()),
-    };
-    let bound = s.n_geo.abs().dot(s.p_error);
-    let ray = Ray {
-        origin: offset_by_bound(s.p, bound, s.n_geo, wi).into(),
-        dir: wi.into(),
-    };
-    let mut tracer = Tracer::default();
-    tracer.push(ray, distance);
-    tracer.run(relief.mesh(frame.mesh), Search::Any, frame.level);
-    tracer.is_hit(0)
+        FrameLightKind::Point(place, _) => place.distance(p),
+    }
 }
 
 /// Unit direction to a light.

@@ -56,7 +56,7 @@ pub fn glance(
     renderer: &mut Progressive,
     stop: &dyn Fn() -> bool,
 ) -> Result<Option<Glance>, TradeError> {
-    let subject = Subject::new(snapshot.clone(), Truth::default())?;
+    let subject = Subject::new(snapshot.clone(), Truth::suiting(snapshot))?;
     let own = subject.own_angle_deg();
     let mut glance = Glance {
         own_angle_deg: own,

@@ -14,10 +14,12 @@ pub fn precompute(subject: &Subject, methods: &[Method]) -> Vec<Precompute> {
     };
     let map = image.height(slot.channel);
     let mut made = Vec::new();
-    if methods.iter().any(|m| m.searches()) {
+    let walks = |m: &Method| m.searches() || *m == Method::Displacement;
+    if methods.iter().any(walks) {
         let (pyramid, ms) = timed(|| HeightPyramid::new(map, slot.wrap));
         made.push(Precompute {
-            what: "pyramid of extremes (exact, and every relief that shadows itself)".to_owned(),
+            what: "pyramid of extremes (exact, displacement, and every relief that shadows itself)"
+                .to_owned(),
             ms,
             bytes: pyramid.bytes(),
         });

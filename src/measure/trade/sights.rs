@@ -6,6 +6,7 @@ use crate::geometry::Ray;
 use crate::geometry::triangle::Watertight;
 use crate::math::{V2, hash, unit_interval};
 use crate::render::Frame;
+use crate::surface::displaced::Tracer;
 use crate::surface::{SurfaceInteraction, SurfaceParts, surface_at, uv_at};
 
 /// A view ray that shows a relief from its front.
@@ -63,25 +64,50 @@ impl<'a> Pinhole<'a> {
         self.look(place)?
     }
 
-    /// `None` if the ray leaves the scene; `Some(None)` if it hits something without a relief.
-    fn look(&self, [x, y]: [f32; 2]) -> Option<Option<Sight>> {
-        let frame = self.frame;
-        let ray = Ray {
-            origin: frame.camera.origin,
-            dir: frame.camera.direction(x, y).into(),
+    fn ray(&self, [x, y]: [f32; 2]) -> Ray {
+        let camera = &self.frame.camera;
+        Ray {
+            origin: camera.origin,
+            dir: camera.direction(x, y).into(),
+        }
+    }
+
+    /// Whether a point of the mesh is not cut out.
+    fn is_solid(&self, prim: u32, u: f32, v: f32) -> bool {
+        let mesh = self.frame.mesh;
+        let attributes = mesh.attributes[prim as usize];
+        let opacity = &self.frame.materials[usize::from(attributes.material)].opacity;
+        let uv = || V2::from(uv_at(mesh, prim, u, v));
+        !attributes.has_uv || opacity.as_ref().is_none_or(|o| o.is_solid(uv()))
+    }
+
+    /// Whether the ray through a place of the picture hits anything, of a displaced surface where there is one.
+    fn is_covered(&self, place: [f32; 2], tracer: &mut Tracer) -> bool {
+        let (frame, ray) = (self.frame, self.ray(place));
+        let displaced = frame.displaced.as_ref().is_some_and(|relief| {
+            let mesh = relief.mesh(frame.mesh);
+            mesh.blocks(tracer, &ray, f32::INFINITY, frame.level)
+        });
+        let stays = |prim: u32, u: f32, v: f32| {
+            !frame.displaces(frame.mesh.attributes[prim as usize]) && self.is_solid(prim, u, v)
         };
-        let solid = |prim: u32, u: f32, v: f32| {
-            let attributes = frame.mesh.attributes[prim as usize];
-            let opacity = &frame.materials[usize::from(attributes.material)].opacity;
-            let uv = || V2::from(uv_at(frame.mesh, prim, u, v));
-            !attributes.has_uv || opacity.as_ref().is_none_or(|o| o.is_solid(uv()))
+        let plain = || {
+            let bvh = frame.bvh;
+            bvh.intersect::<Watertight, _>(&ray, f32::INFINITY, &stays)
         };
+        displaced || plain().is_some()
+    }
+
+    /// `None` if the ray misses the mesh; `Some(None)` if it hits something without a relief.
+    fn look(&self, place: [f32; 2]) -> Option<Option<Sight>> {
+        let (frame, ray) = (self.frame, self.ray(place));
+        let solid = |prim: u32, u: f32, v: f32| self.is_solid(prim, u, v);
         let hit = frame
             .bvh
             .intersect::<Watertight, _>(&ray, f32::INFINITY, &solid)?;
         let attributes = frame.mesh.attributes[hit.prim as usize];
         let material = usize::from(attributes.material);
-        if !attributes.has_uv || frame.materials[material].mapping.self_shadow().is_none() {
+        if !attributes.has_uv || frame.materials[material].field().is_none() {
             return Some(None);
         }
         let surface = surface_at(frame.mesh, &hit, &ray, SurfaceParts::Gradients);
@@ -105,12 +131,16 @@ impl<'a> Pinhole<'a> {
         let rows = (count / columns).max(1);
         let mut relief = Vec::new();
         let mut outline = Vec::new();
+        let (frame, mut tracer) = (self.frame, Tracer::default());
         for cell in 0..columns * rows {
             let random = |k: u32| unit_interval(hash(hash(seed.wrapping_add(k)) ^ cell));
             let x = ((cell % columns) as f32 + random(0)) / columns as f32 * width;
             let y = ((cell / columns) as f32 + random(0x9e37_79b9)) / rows as f32 * height;
             let seen = self.look([x, y]);
-            outline.push(seen.is_some());
+            outline.push(match frame.displaced {
+                Some(_) => self.is_covered([x, y], &mut tracer),
+                None => seen.is_some(),
+            });
             relief.extend(seen.flatten());
         }
         Sights { relief, outline }

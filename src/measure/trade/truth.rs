@@ -1,18 +1,22 @@
 //! Where a view ray really lands.
 //!
-//! This file alone says what is true. A better truth than the exact walk over a flat chart (a displaced surface,
-//! say) becomes the reference of every figure by another [`Truth`] here.
+//! This file alone says what is true.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 
 use super::facet::Facet;
-use crate::surface::mapping::relief::{ReliefField, ReliefRay};
+use super::sights::Sight;
+use super::subject::with_mapping;
+use crate::geometry::{Ray, offset_by_bound};
+use crate::math::gamma;
+use crate::render::{Frame, Snapshot};
+use crate::surface::displaced::Tracer;
+use crate::surface::mapping::relief::{LIFT, ReliefField, ReliefRay};
 use crate::surface::mapping::{Derivative, Lookup, MappingSettings, Method};
+use crate::texture::Wrap;
 
 /// Below this cosine between normal and view nothing is measured; the searches' own limit is lower.
 pub const MIN_COS: f64 = 1e-4;
-/// Shadow walks start this share of the relief's thickness over it, as the renderer's do.
-const LIFT: f64 = 1.0 / 1_048_576.0;
 
 /// What everything is measured against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -21,6 +25,9 @@ pub enum Truth {
     /// curved base it is the relief that every method here aims at, without the outline.
     #[default]
     Walk,
+    /// The displaced surface with its outline and the shadows that it throws on itself, each point followed to the
+    /// surface between the micro-triangles in double precision.
+    Displaced,
 }
 
 /// A place on the relief, internal units.
@@ -39,12 +46,28 @@ pub struct Landing {
 }
 
 impl Truth {
+    /// What suits a scene: the walk where all of its reliefs lie on flat charts.
+    #[must_use]
+    pub fn suiting(snapshot: &Snapshot) -> Self {
+        let mapping = Self::Displaced.settings(&snapshot.settings.mapping);
+        let displaced = with_mapping(snapshot, mapping);
+        let frame = Frame::new(&displaced);
+        let kinds = frame.displaced.as_ref().map(|d| d.displacement.kinds());
+        match kinds {
+            Some([_, fine]) if fine > 0 => Self::Displaced,
+            _ => Self::Walk,
+        }
+    }
+
     /// For reports.
     #[must_use]
     pub const fn summary(self) -> &'static str {
         match self {
             Self::Walk => {
                 "the bilinear relief over the flat chart of each hit, walked in double precision (method `exact`)"
+            }
+            Self::Displaced => {
+                "the displaced surface with its outline, followed in double precision (method `displacement`)"
             }
         }
     }
@@ -54,15 +77,17 @@ impl Truth {
     pub const fn moves_outlines(self) -> bool {
         match self {
             Self::Walk => false,
+            Self::Displaced => true,
         }
     }
 
     /// The settings that render it.
     #[must_use]
-    pub const fn settings(self, mapping: &MappingSettings) -> MappingSettings {
+    pub fn settings(self, mapping: &MappingSettings) -> MappingSettings {
         let mut mapping = *mapping;
         mapping.method = match self {
             Self::Walk => Method::Exact,
+            Self::Displaced => Method::Displacement,
         };
         mapping.use_parallax = true;
         mapping.use_height = true;
@@ -72,27 +97,87 @@ impl Truth {
         mapping
     }
 
-    /// Where the ray of a facet lands on the relief over it; `None` where it looks along the surface or at its back.
+    /// Where a view ray lands; `None` where it looks along the surface or at its back, or passes the true surface.
     #[must_use]
-    pub fn landing(self, field: &ReliefField<'_>, facet: &Facet) -> Option<Landing> {
+    pub fn landing(self, frame: &Frame<'_>, sight: &Sight, tracer: &mut Tracer) -> Option<Landing> {
+        let field = frame.materials[sight.material].field()?;
         match self {
-            Self::Walk => walked(field, facet),
+            Self::Walk => walked(field, &sight.facet),
+            Self::Displaced => displaced(frame, field, sight, tracer),
         }
     }
 
-    /// Whether the relief hides the light in the unit direction `wi` from a landing.
+    /// Whether anything that the truth knows of hides the light in the unit direction `wi`, `distance` away, from a
+    /// landing: the relief, and where that is displaced all of the surface.
     #[must_use]
     pub fn is_shadowed(
         self,
-        field: &ReliefField<'_>,
-        facet: &Facet,
-        landing: &Landing,
-        wi: DVec3,
+        frame: &Frame<'_>,
+        (sight, landing): (&Sight, &Landing),
+        (wi, distance): (DVec3, f32),
+        tracer: &mut Tracer,
     ) -> bool {
         match self {
-            Self::Walk => hidden(field, facet, landing, wi),
+            Self::Walk => {
+                let field = frame.materials[sight.material].field();
+                field.is_some_and(|field| hidden(field, &sight.facet, landing, wi))
+            }
+            Self::Displaced => {
+                let (p, n) = (landing.p.as_vec3(), landing.normal.as_vec3());
+                let bound = p.abs().dot(n.abs()) * gamma(8);
+                is_behind_relief(frame, (p, n, bound), (wi.as_vec3(), distance), tracer)
+            }
         }
     }
+}
+
+/// Whether the displaced surface keeps a light from a point of it, given with its normal and the bound of its rounding
+/// along that.
+pub fn is_behind_relief(
+    frame: &Frame<'_>,
+    (p, n, bound): (Vec3, Vec3, f32),
+    (wi, distance): (Vec3, f32),
+    tracer: &mut Tracer,
+) -> bool {
+    let Some(relief) = &frame.displaced else {
+        return false;
+    };
+    let ray = Ray {
+        origin: offset_by_bound(p.into(), bound, n.into(), wi.into()).into(),
+        dir: wi,
+    };
+    let mesh = relief.mesh(frame.mesh);
+    mesh.blocks(tracer, &ray, distance, frame.level)
+}
+
+/// The view ray against the displaced surface, then on to the surface between its micro-triangles.
+fn displaced(
+    frame: &Frame<'_>,
+    field: &ReliefField<'_>,
+    sight: &Sight,
+    tracer: &mut Tracer,
+) -> Option<Landing> {
+    let facet = &sight.facet;
+    let mesh = frame.displaced.as_ref()?.mesh(frame.mesh);
+    let ray = Ray {
+        origin: frame.camera.origin,
+        dir: (-sight.surface.wo).into(),
+    };
+    let hit = mesh.closest(tracer, &ray, f32::INFINITY, frame.level)?;
+    let found = mesh.smooth_hit(&ray, &hit)?;
+    let mut uv = found.point.uv;
+    let turns = field.height.addressing.scale.as_dvec2();
+    if field.height.addressing.wrap == Wrap::Repeat && turns.x * turns.y != 0.0 {
+        // Of all coordinates of this place the nearest: across a seam a turn is no distance.
+        uv -= ((uv - facet.uv) * turns).round() / turns;
+    }
+    Some(Landing {
+        uv,
+        z: (found.point.p - facet.p).dot(facet.normal),
+        p: found.point.p,
+        normal: found.normal,
+        doubt_texels: found.doubt_texels,
+    })
 }
 
 /// Texels per internal unit of z along a direction.
@@ -131,13 +216,9 @@ fn walked(field: &ReliefField<'_>, facet: &Facet) -> Option<Landing> {
     })
 }
 
-/// Normal of the bilinear relief at a place in texels: inside a cell its height is linear in x and in y.
-fn relief_normal(field: &ReliefField<'_>, facet: &Facet, [x, y]: [f64; 2]) -> DVec3 {
-    let (x0, y0) = (x.floor(), y.floor());
-    let slope = [
-        field.displacement([x0 + 1.0, y]) - field.displacement([x0, y]),
-        field.displacement([x, y0 + 1.0]) - field.displacement([x, y0]),
-    ];
+/// Normal of the bilinear relief at a place in texels.
+fn relief_normal(field: &ReliefField<'_>, facet: &Facet, place: [f64; 2]) -> DVec3 {
+    let slope = field.slope(place);
     let rates = field.texels_per_uv();
     let tilt = |k: usize| facet.gradients[k] * (slope[k] * rates[k]);
     (facet.normal - tilt(0) - tilt(1)).normalize_or(facet.normal)
