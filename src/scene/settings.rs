@@ -2,16 +2,18 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Camera;
+use super::{Camera, View};
 use crate::math::LinearRgb;
 use crate::shading::{Light, Material};
 use crate::surface::mapping::MappingSettings;
 
-/// Changes of these re-encode the picture; nothing is traced or shaded.
+/// Changes of these re-encode the picture; nothing is traced or shaded, unless a view needs what was not noted.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DisplaySettings {
     /// Exposure in stops: the picture is multiplied by `2^exposure_ev` before sRGB encoding.
     pub exposure_ev: f32,
+    /// What is shown. Some views need records of the pixels, which are made from the first sample on.
+    pub view: View,
 }
 
 /// Which reflection model turns light into colour.

@@ -20,7 +20,7 @@ use super::story::{Story, story_ui};
 use super::toasts::Toasts;
 use super::viewport::{self, Framebuffer, Side, ViewportClick};
 use super::worker::{FirstPass, FrameStats, Refinement, RenderNote, RenderRequest, RenderWorker};
-use super::{ViewOptions, compare_view, light_markers, loading, theme, windows};
+use super::{ViewOptions, compare_view, legend, light_markers, loading, theme, windows};
 use crate::measure::feel::{Feel, FeelLog};
 use crate::render::{Progressive, Snapshot};
 use crate::scene::built_in::SCENES;
@@ -382,6 +382,8 @@ impl ViewerApp {
             }
             Command::ExposureUp => *exposure = brighter(*exposure + EXPOSURE_STEP),
             Command::ExposureDown => *exposure = brighter(*exposure - EXPOSURE_STEP),
+            Command::NextView => doc.display.view = doc.display.view.next(),
+            Command::PreviousView => doc.display.view = doc.display.view.previous(),
             Command::ToggleCompare => doc.comparison.on = !doc.comparison.on,
             Command::ToggleError => doc.comparison.toggle_error(),
             Command::Select(method) => doc.settings.mapping.method = method,
@@ -533,7 +535,7 @@ impl ViewerApp {
 
     fn overlays_ui(&mut self, ctx: &egui::Context, window: Rect) {
         if let Some(doc) = &self.doc {
-            compare_view::legend_ui(ctx, &doc.comparison);
+            legend::legend_ui(ctx, self.framebuffer.stats(), &doc.comparison);
         }
         windows::help_ui(ctx, &mut self.state.help);
         story_ui(ctx, &mut self.state.story);
@@ -556,7 +558,7 @@ impl ViewerApp {
                 settings,
                 size: self.size,
             },
-            exposure_ev: doc.display.exposure_ev,
+            display: doc.display,
             first_pass: if self.preferences.preview {
                 FirstPass::Adaptive
             } else {

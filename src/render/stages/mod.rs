@@ -83,12 +83,14 @@ pub struct Run {
     pub kind: FacetKind,
     /// Whether they lie on a displaced surface, so that the hits know point and normal.
     pub displaced: bool,
+    /// Whether their places on a relief are searched for, so that [`ReliefPoints`] tell of them.
+    pub searches: bool,
     /// Where they are.
     pub places: Places,
 }
 
-/// What lights want to know of points that a search found on a relief. Read only where a material's mapping
-/// searches; what other places hold means nothing.
+/// What lights want to know of points that a search found on a relief. Read only in runs that
+/// search; what other places hold means nothing.
 #[derive(Debug)]
 pub struct ReliefPoints {
     /// How far under the triangle's plane each lies, along the geometric normal.
@@ -234,6 +236,7 @@ impl Work {
     ) {
         let (rays, surfaces, walks) = (&mut self.rays, &mut self.surfaces, &mut self.walks);
         surface::mapped_surfaces(frame, (rays, hits), surfaces, walks, counters);
+        watch.mapped(frame, (rays, hits), surfaces);
         watch.done(Stage::Perturb);
         let lists = (walks, &mut self.tracer);
         let (shadows, hit) = ((&mut self.shadows, lists), (&*rays, hits));
@@ -262,6 +265,7 @@ impl Scratch {
             }
             counters.mirror_rays += work.rays.active.count();
             trace::closest_hits(frame, &mut work.rays, hits, &mut work.tracer, counters);
+            watch.traced(&work.rays.active, &work.tracer);
             watch.done(Stage::Trace);
             work.shade_hits(frame, hits, mirrors_at(frame, bounce), counters, watch);
         }

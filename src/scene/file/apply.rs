@@ -26,6 +26,7 @@ pub(super) fn apply(
     apply_mapping(&document.mapping, &mut settings.mapping);
     put(&mut settings.samples, document.samples);
     put(&mut loaded.display.exposure_ev, document.exposure_ev);
+    put(&mut loaded.display.view, document.view);
     loaded.size = document.size.or(loaded.size);
 
     if document.materials.is_empty() {

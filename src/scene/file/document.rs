@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::math::LinearRgb;
-use crate::scene::{Background, BentNormals, ShadingModel};
+use crate::scene::{Background, BentNormals, ShadingModel, View};
 use crate::shading::Light;
 use crate::surface::mapping::{Derivative, Lookup, Method};
 use crate::texture::{Channel, MapRole, Wrap};
@@ -54,6 +54,8 @@ pub(super) struct Document {
     pub samples: Option<u32>,
     /// `[display] exposure_ev`, stops.
     pub exposure_ev: Option<f32>,
+    /// `[display] view`.
+    pub view: Option<View>,
 }
 
 /// `[camera]`, world units and degrees.

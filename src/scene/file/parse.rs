@@ -9,7 +9,7 @@ use super::fault::{Fault, Read};
 use super::parse_light::lights;
 use super::parse_material::materials;
 use super::section::{Item, Limits, Section};
-use crate::scene::{Background, BentNormals, ShadingModel};
+use crate::scene::{Background, BentNormals, ShadingModel, View};
 use crate::surface::mapping::{Derivative, Lookup, Method, SearchSettings};
 
 /// Most columns or rows of a picture.
@@ -61,7 +61,7 @@ fn document(text: &str) -> Read<Document> {
     let mapping = mapping(&mut root)?;
     let materials = materials(&mut root)?;
     let (size, samples) = render(&mut root)?;
-    let exposure_ev = display(&mut root)?;
+    let (exposure_ev, view) = display(&mut root)?;
     root.finish()?;
     Ok(Document {
         model,
@@ -74,6 +74,7 @@ fn document(text: &str) -> Read<Document> {
         size,
         samples,
         exposure_ev,
+        view,
     })
 }
 
@@ -219,15 +220,16 @@ fn render(root: &mut Section<'_>) -> Read<(Option<[u32; 2]>, Option<u32>)> {
     Ok((size, samples))
 }
 
-fn display(root: &mut Section<'_>) -> Read<Option<f32>> {
+fn display(root: &mut Section<'_>) -> Read<(Option<f32>, Option<View>)> {
     let Some(mut table) = root.section("display")? else {
-        return Ok(None);
+        return Ok((None, None));
     };
     let exposure_ev = table.read("exposure_ev", |x| {
         x.single(Limits::Within(-MAX_EXPOSURE_EV, MAX_EXPOSURE_EV))
     })?;
+    let view = table.read("view", |x| x.choice(&View::ALL, View::name))?;
     table.finish()?;
-    Ok(exposure_ev)
+    Ok((exposure_ev, view))
 }
 
 /// A relief's height, world units, or "default".

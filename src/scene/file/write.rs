@@ -95,6 +95,7 @@ pub(super) fn scene_text(view: &SceneView<'_>, base: &Path) -> Result<String, Sa
     text.raw("samples", view.settings.samples);
     text.table("display");
     text.single("exposure_ev", view.display.exposure_ev)?;
+    text.string("view", view.display.view.name());
     Ok(text.finish())
 }
 

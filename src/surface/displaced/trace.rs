@@ -40,12 +40,16 @@ pub enum Search {
 /// A ray, where it ends, and what it has met.
 #[derive(Debug, Clone, Copy)]
 struct Asked {
+    /// Whose ray it is.
+    place: usize,
     ray: Ray,
     best: Best,
     /// Triangle of the micro-triangle that was met, with its segments.
     fine: Option<(u32, u8)>,
     /// Triangle of the flat relief that was met, and the distance in doubles.
     flat: Option<(u32, f64)>,
+    /// Steps of walks, and parts cut up or made.
+    steps: u64,
 }
 
 /// A walk over the flat relief of a triangle, for one of the rays.
@@ -67,8 +71,6 @@ pub struct Tracer {
     rays: Vec<ReliefRay>,
     walks: Vec<Walk>,
     ranges: RangeCache,
-    /// Steps of walks, and parts cut up or made, since the last [`Self::take_steps`].
-    steps: u64,
 }
 
 /// What is traced.
@@ -90,7 +92,13 @@ impl Tracer {
 
     /// Adds a ray that ends at `t_max`.
     pub fn push(&mut self, ray: Ray, t_max: f32) {
+        self.push_for(0, ray, t_max);
+    }
+
+    /// Adds the ray of a place, to be told apart in [`Self::steps_by_place`].
+    pub fn push_for(&mut self, place: usize, ray: Ray, t_max: f32) {
         self.asked.push(Asked {
+            place,
             ray,
             best: Best {
                 t: t_max,
@@ -98,12 +106,19 @@ impl Tracer {
             },
             fine: None,
             flat: None,
+            steps: 0,
         });
     }
 
-    /// Steps taken so far, counted anew from here.
-    pub const fn take_steps(&mut self) -> u64 {
-        std::mem::replace(&mut self.steps, 0)
+    /// Steps that all rays of the list took.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.asked.iter().map(|asked| asked.steps).sum()
+    }
+
+    /// The rays' places, and the steps that each took.
+    pub fn steps_by_place(&self) -> impl Iterator<Item = (usize, u64)> {
+        self.asked.iter().map(|asked| (asked.place, asked.steps))
     }
 
     /// Finds what all rays meet.
@@ -133,9 +148,9 @@ impl Tracer {
             self.walks.resize(self.rays.len(), Walk::NONE);
             field.walk_all(level, &self.rays, &mut self.walks);
             for (job, walk) in self.jobs.iter().filter(this).zip(&self.walks) {
-                self.steps += u64::from(walk.steps);
-                let Some(at) = walk.at else { continue };
                 let asked = &mut self.asked[job.asked];
+                asked.steps += u64::from(walk.steps);
+                let Some(at) = walk.at else { continue };
                 let t = job.from + at;
                 let nearer = match asked.flat {
                     Some((prim, known)) => t < known || (t == known && job.prim < prim),
@@ -188,7 +203,6 @@ impl Kernel for Visit<'_, '_, '_> {
             reliefs,
             displacement,
         } = self.mesh;
-        let mut counters = FineCounters::default();
         let mut last_prism: Option<(u32, FlatPrism<'_, '_>)> = None;
         let Tracer {
             asked,
@@ -198,6 +212,7 @@ impl Kernel for Visit<'_, '_, '_> {
         } = self.tracer;
         for (index, asked) in asked.iter_mut().enumerate() {
             let mut fine_ray = None;
+            let mut counters = FineCounters::default();
             let ray = asked.ray;
             let mut boxes = displacement.tree.along(&ray);
             while let Some(i) = boxes.next(asked.best.t) {
@@ -247,7 +262,7 @@ impl Kernel for Visit<'_, '_, '_> {
                     break;
                 }
             }
+            asked.steps += counters.parts + counters.leaves;
         }
-        self.tracer.steps += counters.parts + counters.leaves;
     }
 }

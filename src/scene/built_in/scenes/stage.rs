@@ -51,6 +51,7 @@ impl Stage {
             },
             display: DisplaySettings {
                 exposure_ev: self.exposure_ev,
+                ..DisplaySettings::default()
             },
             size: None,
             warnings: Vec::new(),
