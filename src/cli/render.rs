@@ -7,7 +7,7 @@ use super::input::{load_changed, snapshot};
 use super::options::{PictureFormat, RenderOptions};
 use super::output;
 use super::progress::Progress;
-use crate::render::{Counters, Legend, PassEnd, Progressive, Snapshot};
+use crate::render::{Counters, Legend, PassEnd, Progressive, Recording, Snapshot};
 use crate::scene::save_picture::{write_exr, write_png};
 use crate::scene::{DisplaySettings, View, ViewKind};
 
@@ -24,6 +24,7 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
             // Linear light is the picture's.
             PictureFormat::Exr => View::Picture,
         },
+        ..loaded.display
     };
     if display.view.covers_picture() && display.view != View::Samples {
         // Records are of first samples.
@@ -33,7 +34,7 @@ pub(super) fn run(options: &RenderOptions) -> Result<(), CliError> {
     let size = snapshot.size;
     let began = Instant::now();
     let mut renderer = Progressive::new(options.threads).map_err(CliError::Threads)?;
-    renderer.record(display.view != View::Picture);
+    renderer.record(Recording::for_view(&display));
     let counters = converge(&mut renderer, snapshot);
     let secs = began.elapsed().as_secs_f64();
     let legend = save(&renderer, options, display)?;
@@ -102,6 +103,7 @@ fn legend_line(legend: &Legend) -> String {
     let colors = match view.kind() {
         ViewKind::Picture => return String::new(),
         ViewKind::Channels => String::new(),
+        ViewKind::Scale if legend.marked > 0 => format!(", from {low} to {high} or more"),
         ViewKind::Scale => format!(", from {low} to {high}"),
         ViewKind::Marks => format!(", {} pixels", legend.marked),
     };

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::film::{Film, Picture, lock};
 use super::recorder::{Recorder, Yardsticks, texels_per_uv};
 use super::stages::{Scratch, StageWatch};
-use super::{Counters, Frame, Records};
+use super::{Counters, Frame, Recording, Records};
 use crate::math::{LinearRgb, SrgbEncoder};
 use crate::scene::{RenderSettings, Scene};
 use crate::surface::mapping::{MappingSettings, Method};
@@ -56,7 +56,7 @@ pub struct Progressive {
     previews: [Option<Film>; 3],
     scratch: Vec<Mutex<Scratch>>,
     reuses_hits: bool,
-    records: bool,
+    recording: Recording,
 }
 
 impl Progressive {
@@ -83,13 +83,13 @@ impl Progressive {
             previews: [const { None }; 3],
             scratch,
             reuses_hits: false,
-            records: false,
+            recording: Recording::Nothing,
         })
     }
 
-    /// Says whether first samples leave [`Self::records`], from the next [`Self::start`] on. It changes no pixel.
-    pub const fn record(&mut self, on: bool) {
-        self.records = on;
+    /// Says what first samples leave in [`Self::records`], from the next [`Self::start`] on. It changes no pixel.
+    pub const fn record(&mut self, what: Recording) {
+        self.recording = what;
     }
 
     /// Takes the next snapshot and starts its picture afresh. Hits of the last one stay if they cannot
@@ -160,7 +160,9 @@ impl Progressive {
             return (PassEnd::Complete, Vec::new());
         };
         let frame = Frame::new(snapshot);
-        let yardsticks = self.records.then(|| Yardsticks::new(snapshot));
+        let recording = self.recording;
+        let yardsticks =
+            (recording != Recording::Nothing).then(|| Yardsticks::new(snapshot, recording));
         let coarser = self.finest().filter(|known| known.stride > film.stride);
         let next = AtomicUsize::new(0);
         let done = AtomicUsize::new(0);

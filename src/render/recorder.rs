@@ -5,9 +5,12 @@ use glam::{Vec2, Vec3};
 use super::Frame;
 use super::Snapshot;
 use super::material::{amplitude, bind_height};
-use super::records::PixelRecord;
+use super::records::{PixelRecord, Recording};
 use super::stages::surface::fetches_per_point;
-use super::stages::{Column3, PLACES, Places, Rays, Run, Stage, StageWatch, Surfaces, Walks};
+use super::stages::{
+    Column3, PLACES, Places, Rays, Run, Shadows, Stage, StageWatch, Surfaces, Walks, vec_at,
+};
+use super::suspect::Suspect;
 use crate::geometry::{Hit, HitLanes};
 use crate::surface::displaced::Tracer;
 use crate::surface::mapping::BoundHeight;
@@ -23,14 +26,17 @@ struct Yardstick<'a> {
     amplitude: f32,
 }
 
-/// One for each material of a snapshot.
+/// What a recorder must know of a snapshot.
 #[derive(Debug)]
-pub struct Yardsticks<'a>(Vec<Yardstick<'a>>);
+pub struct Yardsticks<'a> {
+    materials: Vec<Yardstick<'a>>,
+    suspect: Option<Suspect>,
+}
 
 impl<'a> Yardsticks<'a> {
     /// Finds the height maps, whether the method reads them or not.
     #[must_use]
-    pub fn new(snapshot: &'a Snapshot) -> Self {
+    pub fn new(snapshot: &'a Snapshot, recording: Recording) -> Self {
         let (scene, settings) = (&*snapshot.scene, &*snapshot.settings);
         let of = |material| {
             let world = amplitude(material, &settings.mapping);
@@ -43,7 +49,16 @@ impl<'a> Yardsticks<'a> {
                 amplitude: scene.normalization.internal_length(world) * gain,
             }
         };
-        Self(settings.materials.iter().map(of).collect())
+        Self {
+            materials: settings.materials.iter().map(of).collect(),
+            suspect: match recording {
+                Recording::Suspect(kernel, offset_rule) => Some(Suspect {
+                    kernel,
+                    offset_rule,
+                }),
+                Recording::Nothing | Recording::Pixels => None,
+            },
+        }
     }
 }
 
@@ -113,6 +128,32 @@ impl<'a> Recorder<'a> {
         }
     }
 
+    /// Asks the suspect about all camera rays but those that hit displaced surfaces.
+    fn look_for_leaks(
+        &mut self,
+        frame: &Frame<'_>,
+        (rays, hits): (&Rays, &HitLanes<PLACES>),
+        surfaces: &Surfaces,
+    ) {
+        let Some(suspect) = self.yardsticks.suspect else {
+            return;
+        };
+        let mut missed = rays.active;
+        for run in &surfaces.runs {
+            missed = missed & !run.places;
+            for place in run.places.iter().filter(|_| !run.displaced) {
+                let ray = rays.lanes.ray(place);
+                let base = base_point(frame, rays, hits, (run, place));
+                let t = (Vec3::from(base.p) - ray.origin).dot(ray.dir);
+                self.records[place].leak = suspect.leaks(frame, &ray, Some(t));
+            }
+        }
+        for place in missed.iter() {
+            let ray = rays.lanes.ray(place);
+            self.records[place].leak = suspect.leaks(frame, &ray, None);
+        }
+    }
+
     /// What is seen in a place of a run.
     fn seen(
         &self,
@@ -122,12 +163,15 @@ impl<'a> Recorder<'a> {
         (run, place): (&Run, usize),
     ) -> PixelRecord {
         let material = &frame.materials[run.material];
-        let yardstick = &self.yardsticks.0[run.material];
+        let yardstick = &self.yardsticks.materials[run.material];
         let base = base_point(frame, rays, hits, (run, place));
-        let (normal, n_geo) = (at(&surfaces.n_shade, place), at(&surfaces.n_geo, place));
+        let (normal, n_geo) = (
+            vec_at(&surfaces.n_shade, place),
+            vec_at(&surfaces.n_geo, place),
+        );
         let wo = Vec3::from(base.wo);
         let n_front = match &hits.displaced {
-            Some(points) if run.displaced => at(&points.normal, place),
+            Some(points) if run.displaced => vec_at(&points.normal, place),
             _ => base.n_geo.into(),
         };
         let smooth_front = Vec3::from(base.n_shade);
@@ -137,7 +181,7 @@ impl<'a> Recorder<'a> {
             0.0
         };
         let z = if run.displaced {
-            (at(&surfaces.p, place) - Vec3::from(base.p)).dot(smooth_front)
+            (vec_at(&surfaces.p, place) - Vec3::from(base.p)).dot(smooth_front)
         } else if sunk == 0.0 {
             0.0
         } else {
@@ -230,6 +274,9 @@ impl StageWatch for Recorder<'_> {
                 }
             }
         }
+        if self.bounces == 0 {
+            self.look_for_leaks(frame, (rays, hits), surfaces);
+        }
         self.bounces += 1;
     }
 
@@ -239,8 +286,27 @@ impl StageWatch for Recorder<'_> {
         }
     }
 
-    fn shadowed(&mut self, rays: &Places, tracer: &Tracer) {
-        self.add_rays(rays, tracer);
+    fn shadowed(
+        &mut self,
+        frame: &Frame<'_>,
+        points: (&Rays, &Surfaces),
+        (shadows, tracer): (&Shadows, &Tracer),
+    ) {
+        self.add_rays(&shadows.lit, tracer);
+        // Displaced surfaces, too, stop shadow rays; no suspect knows of them.
+        let suspect = self
+            .yardsticks
+            .suspect
+            .filter(|_| frame.displaced.is_none());
+        let Some(suspect) = suspect.filter(|_| self.bounces == 1) else {
+            return;
+        };
+        for run in &points.1.runs {
+            for place in (run.places & shadows.lit).iter() {
+                let is_wrong = suspect.shadows_wrongly(frame, points, shadows, (run, place));
+                self.records[place].false_shadow |= is_wrong;
+            }
+        }
     }
 }
 
@@ -265,9 +331,4 @@ fn base_point(
         run.kind.parts
     };
     surface_at(frame.mesh, &hit, &rays.lanes.ray(place), parts)
-}
-
-fn at(columns: &Column3, place: usize) -> Vec3 {
-    let [x, y, z] = columns;
-    Vec3::new(x.0[place], y.0[place], z.0[place])
 }

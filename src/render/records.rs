@@ -2,6 +2,44 @@
 
 use glam::{Vec2, Vec3};
 
+use crate::geometry::{Kernel, OffsetRule};
+use crate::scene::{DisplaySettings, View};
+
+/// What first samples leave.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Recording {
+    /// Colours alone.
+    #[default]
+    Nothing,
+    /// Records of all pixels.
+    Pixels,
+    /// Records that also tell where camera and shadow rays would end by this kernel and this offset, which takes
+    /// tracing them once more. Only triangles that are not displaced are asked about.
+    Suspect(Kernel, OffsetRule),
+}
+
+impl Recording {
+    /// What a view needs.
+    #[must_use]
+    pub const fn for_view(display: &DisplaySettings) -> Self {
+        match display.view {
+            View::Picture => Self::Nothing,
+            View::Leaks | View::FalseShadows => Self::Suspect(display.kernel, display.offset_rule),
+            _ => Self::Pixels,
+        }
+    }
+
+    /// Whether what it leaves is enough for the other one.
+    #[must_use]
+    pub fn serves(self, other: Self) -> bool {
+        match other {
+            Self::Nothing => true,
+            Self::Pixels => self != Self::Nothing,
+            Self::Suspect(..) => self == other,
+        }
+    }
+}
+
 /// What the first sample of a pixel (its centre) found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PixelRecord {
@@ -33,6 +71,10 @@ pub struct PixelRecord {
     pub non_finite: bool,
     /// Whether the search took every step it may, so that it may have stopped short.
     pub at_the_cap: bool,
+    /// Whether the camera ray sees something else by the [suspect](Recording::Suspect)'s kernel.
+    pub leak: bool,
+    /// Whether a light's shadow ray says something else by the suspect's kernel and offset.
+    pub false_shadow: bool,
 }
 
 impl PixelRecord {
@@ -50,6 +92,8 @@ impl PixelRecord {
         invalid_normal: false,
         non_finite: false,
         at_the_cap: false,
+        leak: false,
+        false_shadow: false,
     };
 }
 

@@ -11,6 +11,9 @@ pub const NO_VALUE: [u8; 3] = [44, 44, 48];
 /// What overlays paint with: as loud on bright pictures as on dark ones.
 pub const MARK: [u8; 3] = [255, 0, 190];
 
+/// Nearer to the base than this, in amplitudes, a place lies on it: rounding.
+const ON_BASE: f32 = 1e-3;
+
 /// What the colours of a view mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Legend {
@@ -18,7 +21,7 @@ pub struct Legend {
     pub view: View,
     /// Values of the scale's ends; 0 and 1 for views without a scale.
     pub range: [f32; 2],
-    /// Pixels that an overlay paints.
+    /// Pixels that an overlay paints, or that lie beyond the scale.
     pub marked: u64,
 }
 
@@ -34,15 +37,19 @@ impl Legend {
         let most = values().fold(0.0, f32::max);
         let least = values().fold(0.0, f32::min);
         let range = match view {
-            View::Steps | View::Samples | View::Cost => [0.0, round_up(most)],
+            View::Steps | View::Samples | View::Cost => [0.0, round_up(usual_most(values()))],
             // A relief may lie under the base, over it, or on both sides.
             View::Depth => {
-                let high = if most > 0.0 || least == 0.0 { 1.0 } else { 0.0 };
-                [if least < 0.0 { -1.0 } else { 0.0 }, high]
+                let (is_over, is_under) = (least < -ON_BASE, most > ON_BASE);
+                let low = if is_over { -1.0 } else { 0.0 };
+                [low, if is_under || !is_over { 1.0 } else { 0.0 }]
             }
             _ => [0.0, 1.0],
         };
-        let marked = pixels().filter(|record| is_marked(view, record)).count();
+        let marked = match view.kind() {
+            ViewKind::Scale => values().filter(|value| *value > range[1]).count(),
+            _ => pixels().filter(|record| is_marked(view, record)).count(),
+        };
         Some(Self {
             view,
             range,
@@ -106,7 +113,19 @@ const fn is_marked(view: View, record: &PixelRecord) -> bool {
         View::InvalidNormals => record.invalid_normal,
         View::NonFinite => record.non_finite,
         View::StepsAtTheCap => record.at_the_cap,
+        View::Leaks => record.leak,
+        View::FalseShadows => record.false_shadow,
         _ => false,
+    }
+}
+
+/// What one value in a hundred exceeds: a few pixels at silhouettes must not take the whole scale.
+fn usual_most(values: impl Iterator<Item = f32>) -> f32 {
+    let mut values: Vec<f32> = values.collect();
+    let rank = (values.len() * 99).div_ceil(100).saturating_sub(1);
+    match values.get(rank) {
+        Some(_) => *values.select_nth_unstable_by(rank, f32::total_cmp).1,
+        None => 0.0,
     }
 }
 

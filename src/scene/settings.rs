@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Camera, View};
+use crate::geometry::{Kernel, OffsetRule};
 use crate::math::LinearRgb;
 use crate::shading::{Light, Material};
 use crate::surface::mapping::MappingSettings;
@@ -14,6 +15,10 @@ pub struct DisplaySettings {
     pub exposure_ev: f32,
     /// What is shown. Some views need records of the pixels, which are made from the first sample on.
     pub view: View,
+    /// The ray–triangle test that the views `leaks` and `false-shadows` compare with the program's own.
+    pub kernel: Kernel,
+    /// The offset of leaving rays that `false-shadows` compares with the program's own.
+    pub offset_rule: OffsetRule,
 }
 
 /// Which reflection model turns light into colour.

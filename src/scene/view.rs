@@ -26,6 +26,10 @@ pub enum View {
     NonFinite,
     /// The picture; over it, searches that took every step they may.
     StepsAtTheCap,
+    /// The picture; over it, pixels at which a textbook's ray–triangle test sees something else.
+    Leaks,
+    /// The picture; over it, pixels that a textbook's shadow rays shadow or light wrongly.
+    FalseShadows,
 }
 
 /// How a view is shown.
@@ -43,7 +47,7 @@ pub enum ViewKind {
 
 impl View {
     /// Every view, in the order of menus and of the key that goes through them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Picture,
         Self::Normals,
         Self::Uv,
@@ -55,6 +59,8 @@ impl View {
         Self::InvalidNormals,
         Self::NonFinite,
         Self::StepsAtTheCap,
+        Self::Leaks,
+        Self::FalseShadows,
     ];
 
     /// Name in scene files, on the command line and in menus.
@@ -72,6 +78,8 @@ impl View {
             Self::InvalidNormals => "invalid-normals",
             Self::NonFinite => "non-finite",
             Self::StepsAtTheCap => "steps-at-the-cap",
+            Self::Leaks => "leaks",
+            Self::FalseShadows => "false-shadows",
         }
     }
 
@@ -98,6 +106,8 @@ impl View {
             }
             Self::NonFinite => "samples that are not finite",
             Self::StepsAtTheCap => "searches that took every step they may",
+            Self::Leaks => "camera rays that the chosen kernel leads elsewhere",
+            Self::FalseShadows => "shadows wrong by the chosen kernel and offset",
         }
     }
 
@@ -110,7 +120,11 @@ impl View {
             Self::Height | Self::Depth | Self::Steps | Self::Samples | Self::Cost => {
                 ViewKind::Scale
             }
-            Self::InvalidNormals | Self::NonFinite | Self::StepsAtTheCap => ViewKind::Marks,
+            Self::InvalidNormals
+            | Self::NonFinite
+            | Self::StepsAtTheCap
+            | Self::Leaks
+            | Self::FalseShadows => ViewKind::Marks,
         }
     }
 

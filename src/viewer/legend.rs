@@ -50,7 +50,10 @@ fn view_ui(ui: &mut Ui, legend: &Legend) {
     ui.label(format!("View {}: {}", view.name(), view.meaning()));
     match view.kind() {
         ViewKind::Picture => {}
-        ViewKind::Scale => bar_ui(ui, legend.range, ""),
+        ViewKind::Scale => {
+            let beyond = if legend.marked > 0 { " or more" } else { "" };
+            bar_ui(ui, legend.range, beyond);
+        }
         ViewKind::Marks => square_ui(ui, MARK, &pixels_text(legend.marked)),
         ViewKind::Channels => {
             let names: &[&str] = match view {

@@ -1,16 +1,19 @@
 //! What is known of pixels beside their colours: the same as one pixel's story and as the counters tell.
 
 use glam::{Vec2, Vec3};
+use reliefscope::geometry::{Kernel, OffsetRule};
 use reliefscope::math::LinearRgb;
 use reliefscope::measure::error_map::{ErrorMetric, ErrorSummary, Shown, error_map};
-use reliefscope::render::{Legend, PassEnd, PixelRecord, Progressive, Records, Snapshot, probe};
+use reliefscope::render::{
+    Legend, PassEnd, PixelRecord, Progressive, Recording, Records, Snapshot, probe,
+};
 use reliefscope::scene::View;
 use reliefscope::scene::built_in;
 use reliefscope::scene::load::LoadOptions;
 use reliefscope::surface::mapping::{Lookup, Method};
 use reliefscope::texture::MapRole;
 
-use crate::support::{QuadScene, bits, edited, heights, plain_float};
+use crate::support::{QuadScene, bits, converged, edited, heights, plain_float};
 
 /// Hills, with a normal map that leans, seen from the side.
 fn hills() -> Snapshot {
@@ -31,7 +34,7 @@ fn by(snapshot: &Snapshot, method: Method) -> Snapshot {
 
 fn recorder(snapshot: &Snapshot, threads: usize) -> Progressive {
     let mut renderer = Progressive::new(threads).expect("threads");
-    renderer.record(true);
+    renderer.record(Recording::Pixels);
     renderer.start(snapshot.clone());
     renderer
 }
@@ -128,7 +131,7 @@ fn records_repeat_and_change_no_pixel() {
         renderer.pass(&|| false);
         assert!(renderer.reuses_hits());
         assert_eq!(renderer.records().expect("records"), first, "{method:?}");
-        renderer.record(false);
+        renderer.record(Recording::Nothing);
         renderer.start(snapshot.clone());
         renderer.pass(&|| false);
         assert_eq!(renderer.records(), None);
@@ -291,5 +294,84 @@ fn every_built_in_scene_has_records_by_every_method() {
                 assert!(pixel.depth.abs() < 1.5, "{name} {method:?} {pixel:?}");
             }
         }
+    }
+}
+
+/// The scene of that name, small; normalised or not.
+fn extremes(name: &str, normalize: bool) -> Snapshot {
+    let options = LoadOptions {
+        normalize,
+        ..LoadOptions::default()
+    };
+    let loaded = built_in::built_in(name, &options).expect("built in");
+    Snapshot {
+        scene: loaded.scene,
+        settings: loaded.settings.into(),
+        size: [64, 48],
+    }
+}
+
+/// Pixels with leaks and with false shadows.
+fn mistakes(snapshot: &Snapshot, kernel: Kernel, offset_rule: OffsetRule) -> [usize; 2] {
+    let mut renderer = Progressive::new(2).expect("threads");
+    renderer.record(Recording::Suspect(kernel, offset_rule));
+    renderer.start(snapshot.clone());
+    renderer.pass(&|| false);
+    let pixels = renderer.records().expect("records").pixels;
+    [
+        pixels.iter().filter(|p| p.leak).count(),
+        pixels.iter().filter(|p| p.false_shadow).count(),
+    ]
+}
+
+#[test]
+fn textbooks_fail_where_numbers_run_out_and_the_program_does_not() {
+    let places = [
+        ("extremes", true),
+        ("extremes@1e-12", false),
+        ("extremes@1e6", false),
+        ("extremes@1e15,1e6", true),
+    ];
+    for (name, normalize) in places {
+        for method in [Method::Bump, Method::Exact, Method::Displacement] {
+            let snapshot = by(&extremes(name, normalize), method);
+            let own = mistakes(&snapshot, Kernel::Watertight, OffsetRule::Bound);
+            assert_eq!(own, [0, 0], "{name} {method:?}");
+        }
+    }
+    // Products of coordinates of 10^-12 vanish: nearly everything is missed.
+    let tiny = extremes("extremes@1e-12", false);
+    let [leaks, _] = mistakes(&tiny, Kernel::Report, OffsetRule::Bound);
+    assert!(leaks > 500, "{leaks}");
+    // An offset of 10^-4 is nothing beside coordinates of 10^6.
+    let large = extremes("extremes@1e6", false);
+    let [leaks, shadows] = mistakes(&large, Kernel::Watertight, OffsetRule::Fixed);
+    assert!(leaks == 0 && shadows > 100, "{leaks} {shadows}");
+    // Centred and scaled first, the same place is no extreme.
+    let [_, shadows] = mistakes(
+        &extremes("extremes@1e6", true),
+        Kernel::Watertight,
+        OffsetRule::Fixed,
+    );
+    assert!(shadows < 10, "{shadows}");
+}
+
+#[test]
+fn a_placement_changes_no_picture() {
+    let render = |name| {
+        let snapshot = edited(&extremes(name, true), |settings| settings.samples = 1);
+        converged(&snapshot, 2).picture()
+    };
+    let plain = render("extremes");
+    for name in ["extremes@1e-15", "extremes@1e15", "extremes@1e3,1e6"] {
+        let placed = render(name);
+        let pairs = plain.pixels.iter().zip(&placed.pixels);
+        let differ = |(a, b): &(&LinearRgb, &LinearRgb)| {
+            let [a, b] = [a.to_array(), b.to_array()];
+            a.iter().zip(b).any(|(a, b)| (a - b).abs() > 0.02)
+        };
+        let different = pairs.filter(differ).count();
+        // Single floats of normals and light are rounded elsewhere: pixels on edges may differ.
+        assert!(different < 30, "{name}: {different} pixels");
     }
 }

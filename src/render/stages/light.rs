@@ -53,7 +53,7 @@ pub fn reflected_light(
         }
         if frame.shadows && !shadows.lit.is_empty() {
             any_hits(frame, rays.count, shadows, tracer, counters);
-            watch.shadowed(&shadows.lit, tracer);
+            watch.shadowed(frame, (rays, surfaces), (shadows, tracer));
             watch.done(Stage::Trace);
         }
         frame.level.run_or_plain(AddLight {

@@ -20,6 +20,8 @@ mod watch;
 pub use walks::Walks;
 pub use watch::{Stage, StageWatch};
 
+use glam::Vec3;
+
 use super::{Counters, Frame};
 use crate::geometry::{CachedHit, HitLanes, RayLanes, TriangleAttributes};
 use crate::math::lanes::{Lanes, PlaceSet};
@@ -286,6 +288,12 @@ pub fn mirrors_at(frame: &Frame<'_>, bounce: u32) -> Mirrors {
 #[inline(always)]
 const fn groups<S: Simd>(count: usize) -> usize {
     count.div_ceil(S::f32s::LEN)
+}
+
+/// The vector in a place.
+#[must_use]
+pub fn vec_at([x, y, z]: &Column3, place: usize) -> Vec3 {
+    Vec3::new(x.0[place], y.0[place], z.0[place])
 }
 
 /// One vector per lane of a group.

@@ -1,7 +1,7 @@
 //! Where a tile's time and work go, for whoever asks. This room reads no clock; a listener may.
 
 use super::super::Frame;
-use super::{PLACES, Places, Rays, Surfaces, Walks};
+use super::{PLACES, Places, Rays, Shadows, Surfaces, Walks};
 use crate::geometry::HitLanes;
 use crate::surface::displaced::Tracer;
 
@@ -41,8 +41,14 @@ pub trait StageWatch {
     }
     /// A relief was asked what of itself it shadows.
     fn walked(&mut self, _walks: &Walks) {}
-    /// Shadow rays were traced; the tracer holds those against displaced surfaces.
-    fn shadowed(&mut self, _rays: &Places, _tracer: &Tracer) {}
+    /// Shadow rays to a light were traced; the tracer holds those against displaced surfaces.
+    fn shadowed(
+        &mut self,
+        _frame: &Frame<'_>,
+        _points: (&Rays, &Surfaces),
+        _traced: (&Shadows, &Tracer),
+    ) {
+    }
 }
 
 /// Both listen.
@@ -70,9 +76,14 @@ impl<A: StageWatch, B: StageWatch> StageWatch for (&mut A, &mut B) {
         self.0.walked(walks);
         self.1.walked(walks);
     }
-    fn shadowed(&mut self, rays: &Places, tracer: &Tracer) {
-        self.0.shadowed(rays, tracer);
-        self.1.shadowed(rays, tracer);
+    fn shadowed(
+        &mut self,
+        frame: &Frame<'_>,
+        points: (&Rays, &Surfaces),
+        traced: (&Shadows, &Tracer),
+    ) {
+        self.0.shadowed(frame, points, traced);
+        self.1.shadowed(frame, points, traced);
     }
 }
 

@@ -22,8 +22,10 @@ use egui::{Color32, ColorImage};
 
 use crate::measure::error_map::{ErrorMetric, ErrorSummary};
 use crate::measure::stage_clock::StageClock;
-use crate::render::{Counters, Legend, PassEnd, Picture, Progressive, Records, Shown, Snapshot};
-use crate::scene::{DisplaySettings, View};
+use crate::render::{
+    Counters, Legend, PassEnd, Picture, Progressive, Recording, Records, Shown, Snapshot,
+};
+use crate::scene::DisplaySettings;
 use crate::surface::mapping::Method;
 
 /// What the worker needs from a renderer. [`Progressive`] is the one that ships.
@@ -39,7 +41,7 @@ pub trait PassRenderer: Send {
         (self.pass(stop), [0.0; 4])
     }
     /// See [`Progressive::record`]. One that keeps no records does not listen.
-    fn record(&mut self, _on: bool) {}
+    fn record(&mut self, _what: Recording) {}
     /// See [`Progressive::records`].
     fn records(&self) -> Option<Records> {
         None
@@ -76,8 +78,8 @@ impl PassRenderer for Progressive {
         let (end, clocks) = self.watched_pass::<StageClock>(stop);
         (end, StageClock::sum_millis(&clocks))
     }
-    fn record(&mut self, on: bool) {
-        Self::record(self, on);
+    fn record(&mut self, what: Recording) {
+        Self::record(self, what);
     }
     fn records(&self) -> Option<Records> {
         Self::records(self)
@@ -171,18 +173,22 @@ impl RenderRequest {
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         self.same_samples(other)
-            && self.display.exposure_ev.to_bits() == other.display.exposure_ev.to_bits()
-            && self.display.view == other.display.view
+            && self.display == other.display
             && self.first_pass == other.first_pass
             && self.refinement == other.refinement
             && self.compare == other.compare
     }
 
-    /// Whether first samples must leave records.
+    /// What first samples must leave.
     #[must_use]
-    pub fn needs_records(&self) -> bool {
+    pub fn recording(&self) -> Recording {
         let error = self.compare.and_then(|compare| compare.error);
-        self.display.view != View::Picture || error.is_some_and(|e| e.metric.needs_records())
+        match Recording::for_view(&self.display) {
+            Recording::Nothing if error.is_some_and(|e| e.metric.needs_records()) => {
+                Recording::Pixels
+            }
+            recording => recording,
+        }
     }
 
     /// Whether the other one asks for no other samples, so that what is done can stay. A comparison that begins
@@ -196,7 +202,7 @@ impl RenderRequest {
             && a.size == b.size
             && self.threads == other.threads
             && (other.compare.is_none() || method(self) == method(other))
-            && (self.needs_records() || !other.needs_records())
+            && self.recording().serves(other.recording())
     }
 }
 

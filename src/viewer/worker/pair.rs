@@ -7,7 +7,9 @@ use egui::Color32;
 use super::{PassRenderer, RenderRequest, RendererFactory};
 use crate::math::false_color;
 use crate::measure::error_map::{self, ErrorSummary, error_map};
-use crate::render::{Counters, Legend, MARK, NO_VALUE, PassEnd, Records, Shown, Snapshot};
+use crate::render::{
+    Counters, Legend, MARK, NO_VALUE, PassEnd, Recording, Records, Shown, Snapshot,
+};
 use crate::scene::{DisplaySettings, View};
 
 /// The renderers of a job. The second exists only while two methods are compared.
@@ -61,7 +63,7 @@ impl Pair {
         request: &RenderRequest,
         factory: &mut RendererFactory,
     ) -> io::Result<()> {
-        let (snapshot, needs_records) = (&request.snapshot, request.needs_records());
+        let (snapshot, recording) = (&request.snapshot, request.recording());
         match request.compare {
             None => self.drop_second(),
             Some(compare) => {
@@ -71,14 +73,14 @@ impl Pair {
                     Some(second) => second,
                     none => none.insert(factory(self.threads)?),
                 };
-                second.record(needs_records);
+                second.record(recording);
                 second.start(Snapshot {
                     settings: settings.into(),
                     ..snapshot.clone()
                 });
             }
         }
-        self.first.record(needs_records);
+        self.first.record(recording);
         self.first.start(snapshot.clone());
         self.records = [const { None }; 2];
         self.spent = [0.0; 4];
@@ -152,8 +154,11 @@ impl Pair {
         request: &RenderRequest,
         mut buffer: impl FnMut() -> Vec<Color32>,
     ) -> Pictures {
-        let DisplaySettings { exposure_ev, view } = request.display;
-        if request.needs_records() {
+        let DisplaySettings {
+            exposure_ev, view, ..
+        } = request.display;
+        let is_recorded = request.recording() != Recording::Nothing;
+        if is_recorded {
             let stays = |known: &Remembered, renderer: &dyn PassRenderer| {
                 // Of all that is in records only the number of samples changes from pass to pass.
                 known.shown == renderer.shown() && view != View::Samples
@@ -183,7 +188,7 @@ impl Pair {
         let second = self.second.as_ref().filter(|_| request.compare.is_some());
         let mut other = second.map(|second| encoded(&**second));
         let records = self.records.each_ref().map(|known| {
-            let known = known.as_ref().filter(|_| request.needs_records());
+            let known = known.as_ref().filter(|_| is_recorded);
             known.map(|known| &known.records)
         });
         let error = request.compare.and_then(|compare| compare.error);

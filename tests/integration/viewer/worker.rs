@@ -456,7 +456,11 @@ fn errors_are_measured_without_rendering_again() {
     }
     assert_eq!(bench.events(), before);
     // Records are made of first samples only: both start once more, and that is enough for all that need them.
-    for metric in [ErrorMetric::NormalAngle, ErrorMetric::Uv, ErrorMetric::Depth] {
+    for metric in [
+        ErrorMetric::NormalAngle,
+        ErrorMetric::Uv,
+        ErrorMetric::Depth,
+    ] {
         show(&mut bench, metric);
     }
     assert_eq!(bench.events(), [before.clone(), before].concat());
