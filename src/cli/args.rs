@@ -9,6 +9,7 @@ use super::bench::BenchArgs;
 use super::help;
 use super::measure::MeasureArgs;
 use super::stability::StabilityArgs;
+use crate::scene::View;
 use crate::scene::file::check_size;
 use crate::surface::mapping::Method;
 
@@ -121,6 +122,9 @@ pub(super) struct RenderArgs {
     /// Worker threads; 0 means one per core. The picture does not depend on it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads_parser())]
     pub threads: u16,
+    /// Show this of the pixels in a PNG in place of the picture, or over it [default: the scene's]
+    #[arg(long, value_name = "NAME", value_parser = view_parser())]
+    pub view: Option<View>,
     /// Exposure of a PNG in stops [default: the scene's]
     #[arg(long, value_name = "EV", allow_hyphen_values = true, value_parser = parse_exposure)]
     pub exposure: Option<f32>,
@@ -164,6 +168,11 @@ pub(super) fn threads_parser() -> clap::builder::RangedI64ValueParser<u16> {
 pub(super) fn method_parser() -> impl TypedValueParser<Value = Method> {
     PossibleValuesParser::new(Method::ALL.map(Method::name))
         .try_map(|name| Method::from_name(&name).ok_or("no such method"))
+}
+
+fn view_parser() -> impl TypedValueParser<Value = View> {
+    PossibleValuesParser::new(View::ALL.map(View::name))
+        .try_map(|name| View::from_name(&name).ok_or("no such view"))
 }
 
 fn pair(text: &str, separators: &[char]) -> Option<[u32; 2]> {

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::scene::View;
 use crate::scene::built_in::SCENES;
 use crate::surface::mapping::Method;
 
@@ -53,7 +54,8 @@ pub(super) const RENDER_EXAMPLES: &str = "\
 Examples:
   reliefscope render wall -o wall.png
   reliefscope render model.obj -o model.png --size 640x480 --samples 16
-  reliefscope render scene.toml -o scene.exr --set camera.vfov_deg=30";
+  reliefscope render scene.toml -o scene.exr --set camera.vfov_deg=30
+  reliefscope render wall -o steps.png --method exact --view steps";
 
 /// Behind `inspect -h`.
 pub(super) const INSPECT_EXAMPLES: &str = "\
@@ -166,7 +168,7 @@ pub(super) fn overview() -> String {
 
 /// Behind `render --help`.
 pub(super) fn render_details() -> String {
-    format!("{RENDER_EXAMPLES}\n\n{SET}\n\n{}", methods())
+    format!("{RENDER_EXAMPLES}\n\n{SET}\n\n{}\n{}", views(), methods())
 }
 
 /// Behind `probe --help`.
@@ -187,6 +189,16 @@ Keys for --set are paths through the scene file, whatever INPUT is:
   material.brick.map.height.gain=2   of a material's map by role or number
   shading.background=[0.1,0.1,0.2]
 A value is TOML; a word needs no quotes. docs/scene.md lists every key with units and ranges.";
+
+/// The one list of views.
+fn views() -> String {
+    let mut text = String::from("Views:\n");
+    for view in View::ALL {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "  {:<18}{}", view.name(), view.meaning());
+    }
+    text
+}
 
 /// The one list of methods.
 pub(super) fn methods() -> String {

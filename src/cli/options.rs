@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::ViewRequest;
 use super::args::{InspectArgs, LoadArgs, ProbeArgs, RenderArgs, SceneArgs, ViewArgs};
 use super::error::CliError;
+use crate::scene::View;
 use crate::scene::load::LoadOptions;
 use crate::surface::mapping::Method;
 
@@ -45,6 +46,8 @@ pub(super) struct RenderOptions {
     pub samples: Option<u32>,
     /// Worker threads; 0 means one per core.
     pub threads: usize,
+    /// View instead of the scene's.
+    pub view: Option<View>,
     /// Stops instead of the scene's.
     pub exposure_ev: Option<f32>,
 }
@@ -109,12 +112,18 @@ impl SceneArgs {
 impl RenderArgs {
     /// Refuses outputs that could not be written, before anything is rendered.
     pub fn check(self) -> Result<RenderOptions, CliError> {
+        let format = format_of(&self.output)?;
+        let is_view = self.view.is_some_and(|view| view != View::Picture);
+        if is_view && format == PictureFormat::Exr {
+            return Err(CliError::Arguments("--view: a view is written as .png"));
+        }
         Ok(RenderOptions {
             scene: self.scene.check(),
-            format: format_of(&self.output)?,
+            format,
             output: check_place(self.output)?,
             samples: self.samples,
             threads: usize::from(self.threads),
+            view: self.view,
             exposure_ev: self.exposure,
         })
     }

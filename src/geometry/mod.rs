@@ -6,6 +6,7 @@
 mod aabb;
 mod bundle;
 pub mod bvh;
+mod kernel;
 mod lanes;
 mod mesh;
 mod normalization;
@@ -17,6 +18,7 @@ pub mod triangle;
 pub use crate::math::simd;
 pub use aabb::Aabb;
 pub use bvh::Bvh;
+pub use kernel::{Kernel, OffsetRule};
 pub use mesh::{TriangleAttributes, TriangleMesh};
 pub use normalization::Normalization;
 pub use ray::{

@@ -6,6 +6,7 @@
 
 mod textbook;
 mod watertight;
+mod woop;
 
 use glam::Vec3;
 
@@ -14,6 +15,7 @@ use super::{Ray, RaySlabs};
 pub use textbook::{MollerTrumbore, ReportEdges};
 pub use watertight::{Axis, Watertight};
 pub(super) use watertight::{edge, inside_in_f64, meet_plane, sheared};
+pub use woop::PlainWoop;
 
 /// Number of triangles that are tested together.
 pub const LANES: usize = 8;

@@ -2,6 +2,7 @@
 //! the machine has lanes ([`Real`]).
 
 mod color;
+mod false_color;
 mod float;
 mod hash;
 pub mod lanes;
@@ -13,6 +14,7 @@ mod vector;
 pub(crate) mod wide;
 
 pub use color::{LinearRgb, SrgbEncoder, linear_from_srgb, srgb_from_linear, srgb8_from_linear};
+pub use false_color::false_color;
 pub use float::{EPS, gamma, next_down, next_up};
 pub use hash::{hash, unit_interval};
 pub use normalize::normalize_or;

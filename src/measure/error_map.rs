@@ -1,7 +1,9 @@
 //! How far every pixel of one shown picture is from another's, for false colours.
 
 use super::flip::{PIXELS_PER_DEGREE, flip};
+use super::trade::angle_deg;
 use crate::math::{LinearRgb, linear_from_srgb};
+use crate::render::{PixelRecord, Records};
 
 /// What is measured in each pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -11,11 +13,24 @@ pub enum ErrorMetric {
     Luma,
     /// [`flip`] at [`PIXELS_PER_DEGREE`], 0…1.
     Flip,
+    /// Angle between the normals that light is computed with, degrees.
+    NormalAngle,
+    /// Distance between the texture coordinates shown, texels of the material's map (see
+    /// [`Records::texels_per_uv`]).
+    Uv,
+    /// Difference of the displacement along the smooth normal, over the amplitude.
+    Depth,
 }
 
 impl ErrorMetric {
     /// Every metric, the cheapest first.
-    pub const ALL: [Self; 2] = [Self::Luma, Self::Flip];
+    pub const ALL: [Self; 5] = [
+        Self::Luma,
+        Self::Flip,
+        Self::NormalAngle,
+        Self::Uv,
+        Self::Depth,
+    ];
 
     /// As lists show it.
     #[must_use]
@@ -23,6 +38,19 @@ impl ErrorMetric {
         match self {
             Self::Luma => "luma difference",
             Self::Flip => "FLIP",
+            Self::NormalAngle => "normal angle",
+            Self::Uv => "uv distance",
+            Self::Depth => "depth over amplitude",
+        }
+    }
+
+    /// What follows its numbers.
+    #[must_use]
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Luma | Self::Flip | Self::Depth => "",
+            Self::NormalAngle => "°",
+            Self::Uv => " texels",
         }
     }
 
@@ -30,63 +58,127 @@ impl ErrorMetric {
     #[must_use]
     pub const fn usual_full_scale(self) -> f32 {
         match self {
-            Self::Luma => 0.25,
+            Self::Luma | Self::Depth => 0.25,
             Self::Flip => 1.0,
+            Self::NormalAngle => 45.0,
+            Self::Uv => 8.0,
         }
+    }
+
+    /// The largest full scale that means something.
+    #[must_use]
+    pub const fn most_full_scale(self) -> f32 {
+        match self {
+            Self::Luma | Self::Flip => 1.0,
+            Self::NormalAngle => 180.0,
+            Self::Uv => 1024.0,
+            Self::Depth => 4.0,
+        }
+    }
+
+    /// Whether it looks at [`Records`] instead of colours.
+    #[must_use]
+    pub const fn needs_records(self) -> bool {
+        matches!(self, Self::NormalAngle | Self::Uv | Self::Depth)
     }
 }
 
-/// A map of errors in two numbers.
+/// A map of errors in a few numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ErrorSummary {
     /// What was measured.
     pub metric: ErrorMetric,
-    /// Over all pixels.
+    /// Over all pixels that have an error.
     pub mean: f32,
-    /// The 95th percentile: the smallest value that at least 95 % of the pixels do not exceed.
+    /// The 95th percentile: the smallest value that at least 95 % of these pixels do not exceed.
     pub p95: f32,
+    /// Pixels with an infinite error: only one of the two pictures shows a surface there.
+    pub lone: u64,
 }
 
 impl ErrorSummary {
     /// Of the values of a map; zeros for an empty one.
     #[must_use]
     pub fn of(metric: ErrorMetric, values: &[f32]) -> Self {
-        let sum: f64 = values.iter().map(|&v| f64::from(v)).sum();
-        let mut sorted = values.to_vec();
-        let rank = (values.len() * 95).div_ceil(100).saturating_sub(1);
-        let p95 = if sorted.is_empty() {
+        let mut finite: Vec<f32> = values.iter().copied().filter(|v| v.is_finite()).collect();
+        let sum: f64 = finite.iter().map(|&v| f64::from(v)).sum();
+        let mean = (sum / finite.len().max(1) as f64) as f32;
+        let rank = (finite.len() * 95).div_ceil(100).saturating_sub(1);
+        let p95 = if finite.is_empty() {
             0.0
         } else {
-            *sorted.select_nth_unstable_by(rank, f32::total_cmp).1
+            *finite.select_nth_unstable_by(rank, f32::total_cmp).1
         };
+        let lone = values.iter().filter(|v| v.is_infinite()).count() as u64;
         Self {
             metric,
-            mean: (sum / values.len().max(1) as f64) as f32,
+            mean,
             p95,
+            lone,
         }
     }
 }
 
-/// The error of every pixel of two shown pictures of one size: sRGB bytes, the fourth not looked at, in rows of
-/// `width`. `stride` is 1, or how many pixels of the screen one of these stands for.
+/// One of two pictures.
+#[derive(Debug, Clone, Copy)]
+pub struct Shown<'a> {
+    /// sRGB bytes, the fourth not looked at, in rows.
+    pub pixels: &'a [[u8; 4]],
+    /// What is known beside the colours.
+    pub records: Option<&'a Records>,
+}
+
+/// The error of every pixel of two shown pictures of one size, in rows of `width`. `stride` is 1, or how many
+/// pixels of the screen one of these stands for.
+///
+/// NaN where there is nothing to compare: neither shows a surface, or the records that the metric needs are
+/// missing. Infinite where only one shows a surface, or the two show maps of different materials.
 #[must_use]
 pub fn error_map(
     metric: ErrorMetric,
-    a: &[[u8; 4]],
-    b: &[[u8; 4]],
+    [a, b]: [Shown<'_>; 2],
     width: usize,
     stride: u32,
 ) -> Vec<f32> {
     match metric {
-        ErrorMetric::Luma => a
-            .iter()
-            .zip(b)
-            .map(|(a, b)| luma_difference(a, b))
-            .collect(),
+        ErrorMetric::Luma => {
+            let pixels = a.pixels.iter().zip(b.pixels);
+            pixels.map(|(a, b)| luma_difference(a, b)).collect()
+        }
         ErrorMetric::Flip => {
             let per_degree = PIXELS_PER_DEGREE / stride.max(1) as f32;
-            flip(&linear(a), &linear(b), width, per_degree)
+            flip(&linear(a.pixels), &linear(b.pixels), width, per_degree)
         }
+        ErrorMetric::NormalAngle | ErrorMetric::Uv | ErrorMetric::Depth => {
+            let (Some(records), Some(others)) = (a.records, b.records) else {
+                return vec![f32::NAN; a.pixels.len()];
+            };
+            let pairs = records.pixels.iter().zip(&others.pixels);
+            pairs
+                .map(|(a, b)| record_difference(metric, records, (a, b)))
+                .collect()
+        }
+    }
+}
+
+fn record_difference(
+    metric: ErrorMetric,
+    records: &Records,
+    (a, b): (&PixelRecord, &PixelRecord),
+) -> f32 {
+    let (material, other) = match (a.material, b.material) {
+        (None, None) => return f32::NAN,
+        (Some(a), Some(b)) => (a, b),
+        _ => return f32::INFINITY,
+    };
+    match metric {
+        ErrorMetric::NormalAngle => angle_deg(a.normal.as_dvec3(), b.normal.as_dvec3()) as f32,
+        ErrorMetric::Depth => (a.depth - b.depth).abs(),
+        _ if material != other => f32::INFINITY,
+        _ => match (a.uv, b.uv, records.texels_per_uv.get(usize::from(material))) {
+            (Some(a), Some(b), Some(&texels)) => ((a - b) * texels).length(),
+            _ => f32::NAN,
+        },
     }
 }
 
@@ -106,6 +198,8 @@ fn linear(bytes: &[[u8; 4]]) -> Vec<LinearRgb> {
 
 #[cfg(test)]
 mod tests {
+    use glam::{Vec2, Vec3};
+
     use super::*;
 
     #[test]
@@ -115,15 +209,72 @@ mod tests {
         assert_eq!((summary.mean, summary.p95), (50.5, 95.0));
         let nothing = ErrorSummary::of(ErrorMetric::Luma, &[]);
         assert_eq!((nothing.mean, nothing.p95), (0.0, 0.0));
+        let some = [f32::NAN, 1.0, f32::INFINITY, 3.0];
+        let some = ErrorSummary::of(ErrorMetric::Uv, &some);
+        assert_eq!((some.mean, some.p95, some.lone), (2.0, 3.0, 1));
+    }
+
+    /// A pixel whose normal leans by `deg` and whose place lies so deep, so far along u.
+    fn leaning(deg: f32, depth: f32, u: f32) -> PixelRecord {
+        let (sin, cos) = deg.to_radians().sin_cos();
+        PixelRecord {
+            material: Some(0),
+            normal: Vec3::new(sin, 0.0, cos),
+            uv: Some(Vec2::new(u, 0.5)),
+            depth,
+            ..PixelRecord::NOTHING
+        }
+    }
+
+    #[test]
+    fn records_are_compared_in_degrees_texels_and_amplitudes() {
+        let nothing = PixelRecord::NOTHING;
+        let records = |first, last| Records {
+            size: [3, 1],
+            pixels: vec![first, nothing, last],
+            texels_per_uv: vec![Vec2::new(64.0, 32.0)],
+        };
+        let (a, b) = (
+            records(leaning(0.0, 0.5, 0.25), nothing),
+            records(leaning(30.0, 0.75, 0.5), leaning(0.0, 0.0, 0.0)),
+        );
+        let pixels = [[0; 4]; 3];
+        let shown = |records| Shown {
+            pixels: &pixels,
+            records: Some(records),
+        };
+        let expected = [
+            (ErrorMetric::NormalAngle, 30.0),
+            (ErrorMetric::Uv, 16.0),
+            (ErrorMetric::Depth, 0.25),
+        ];
+        for (metric, error) in expected {
+            let map = error_map(metric, [shown(&a), shown(&b)], 3, 1);
+            assert!((map[0] - error).abs() < 1e-4, "{metric:?}: {map:?}");
+            assert!(
+                map[1].is_nan() && map[2].is_infinite(),
+                "{metric:?}: {map:?}"
+            );
+            let unknown = Shown {
+                records: None,
+                ..shown(&a)
+            };
+            let map = error_map(metric, [shown(&a), unknown], 3, 1);
+            assert!(map.iter().all(|e| e.is_nan()), "{metric:?}: {map:?}");
+        }
     }
 
     #[test]
     fn equal_pictures_have_no_error_and_opposite_ones_all() {
         let (black, white) = ([[0, 0, 0, 255]; 9], [[255; 4]; 9]);
-        for metric in ErrorMetric::ALL {
-            let same = error_map(metric, &white, &white, 3, 1);
+        for metric in [ErrorMetric::Luma, ErrorMetric::Flip] {
+            let shown = |pixels| Shown {
+                pixels,
+                records: None,
+            };
+            let same = error_map(metric, [shown(&white), shown(&white)], 3, 1);
             assert_eq!(same, [0.0; 9], "{metric:?}");
-            let opposite = error_map(metric, &black, &white, 3, 1);
+            let opposite = error_map(metric, [shown(&black), shown(&white)], 3, 1);
             assert!(
                 opposite.iter().all(|&e| e > 0.95 && e <= 1.0),
                 "{opposite:?}"

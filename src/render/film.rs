@@ -4,10 +4,10 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
 
-use super::Counters;
 use super::sites::{BLOCK_SIZE, place_of};
 use super::stages::camera::Pixels;
 use super::tile::{TILE_SIZE, Tile};
+use super::{Counters, PixelRecord};
 use crate::geometry::CachedHit;
 use crate::math::LinearRgb;
 
@@ -123,6 +123,28 @@ impl Film {
             sum += lock(tile).counters;
         }
         sum
+    }
+
+    /// What the first samples found, one entry for each pixel of the film in rows; nothing unless every pixel has it.
+    #[must_use]
+    pub fn records(&self) -> Vec<PixelRecord> {
+        let [width, height] = self.size.map(|n| n as usize);
+        let mut records = vec![PixelRecord::NOTHING; width * height];
+        for tile in &self.tiles {
+            let tile = lock(tile);
+            if tile.records.is_empty() {
+                return Vec::new();
+            }
+            let [x0, y0] = tile.pixels.corner;
+            let pixels = (0..tile.size[1]).flat_map(|y| (0..tile.size[0]).map(move |x| [x, y]));
+            for [x, y] in pixels {
+                records[(y0 + y) as usize * width + (x0 + x) as usize] = PixelRecord {
+                    samples: tile.samples,
+                    ..tile.records[place_of(x, y)]
+                };
+            }
+        }
+        records
     }
 
     /// Fills `out`, one entry for each pixel of the film in rows, with what `f` makes of the means of their

@@ -172,7 +172,9 @@ pub fn amplitude(material: &Material, mapping: &MappingSettings) -> f64 {
         .max(0.0)
 }
 
-fn bind_height<'a>(
+/// A height map tied to its slot, with this amplitude (internal units) and the stored height that lies on the mesh.
+#[must_use]
+pub fn bind_height<'a>(
     slot: &MapSlot,
     scene: &'a Scene,
     amplitude: f32,

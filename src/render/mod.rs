@@ -10,10 +10,14 @@ mod profile;
 mod progressive;
 mod ray_jobs;
 mod ray_list;
+mod recorder;
+mod records;
 mod sampling;
 mod sites;
 mod stages;
+mod suspect;
 mod tile;
+mod view;
 
 pub use counters::Counters;
 pub use crash::crashing_pixel;
@@ -25,5 +29,7 @@ pub use profile::{LightProfile, MethodProfile, NoProfile, ReliefProfile, profile
 pub use progressive::{PassEnd, Progressive, Shown, Snapshot};
 pub use ray_jobs::rays_of;
 pub use ray_list::{RayKind, RayList, RayQuery};
+pub use records::{PixelRecord, Recording, Records};
 pub use sampling::pixel_sample;
 pub use stages::{Stage, StageWatch};
+pub use view::{Legend, MARK, NO_VALUE};

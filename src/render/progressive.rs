@@ -4,8 +4,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::film::{Film, Picture, lock};
+use super::recorder::{Recorder, Yardsticks, texels_per_uv};
 use super::stages::{Scratch, StageWatch};
-use super::{Counters, Frame};
+use super::{Counters, Frame, Recording, Records};
 use crate::math::{LinearRgb, SrgbEncoder};
 use crate::scene::{RenderSettings, Scene};
 use crate::surface::mapping::MappingSettings;
@@ -55,6 +56,7 @@ pub struct Progressive {
     previews: [Option<Film>; 3],
     scratch: Vec<Mutex<Scratch>>,
     reuses_hits: bool,
+    recording: Recording,
 }
 
 impl Progressive {
@@ -81,7 +83,13 @@ impl Progressive {
             previews: [const { None }; 3],
             scratch,
             reuses_hits: false,
+            recording: Recording::Nothing,
         })
+    }
+
+    /// Says what first samples leave in [`Self::records`], from the next [`Self::start`] on. It changes no pixel.
+    pub const fn record(&mut self, what: Recording) {
+        self.recording = what;
     }
 
     /// Takes the next snapshot and starts its picture afresh. Hits of the last one stay if they cannot
@@ -152,6 +160,9 @@ impl Progressive {
             return (PassEnd::Complete, Vec::new());
         };
         let frame = Frame::new(snapshot);
+        let recording = self.recording;
+        let yardsticks =
+            (recording != Recording::Nothing).then(|| Yardsticks::new(snapshot, recording));
         let coarser = self.finest().filter(|known| known.stride > film.stride);
         let next = AtomicUsize::new(0);
         let done = AtomicUsize::new(0);
@@ -170,7 +181,15 @@ impl Progressive {
                     if stop() {
                         break;
                     }
-                    tile.sample(&frame, coarser, &mut scratch, &mut watch);
+                    match yardsticks.as_ref().filter(|_| tile.samples == 0) {
+                        None => tile.sample(&frame, coarser, &mut scratch, &mut watch),
+                        Some(yardsticks) => {
+                            let mut recorder = Recorder::new(yardsticks);
+                            let mut both = (&mut watch, &mut recorder);
+                            tile.sample(&frame, coarser, &mut scratch, &mut both);
+                            tile.records = recorder.finish(&scratch.work.radiance);
+                        }
+                    }
                 }
                 done.fetch_add(1, Ordering::Relaxed);
             }
@@ -243,6 +262,19 @@ impl Progressive {
             size: film.size,
             stride: film.stride,
         }
+    }
+
+    /// What the first samples of what is [`shown`](Self::shown) found; `None` unless they were
+    /// [asked for](Self::record).
+    #[must_use]
+    pub fn records(&self) -> Option<Records> {
+        let film = self.finest()?;
+        let pixels = film.records();
+        (!pixels.is_empty()).then(|| Records {
+            size: film.size,
+            pixels,
+            texels_per_uv: self.snapshot.as_ref().map_or_else(Vec::new, texels_per_uv),
+        })
     }
 
     /// The finest film in which every pixel has a sample.

@@ -6,7 +6,7 @@ use super::stages::camera::Pixels;
 use super::stages::{
     self, Column, Column3, PLACES, Scratch, Stage, StageWatch, camera, film, trace,
 };
-use super::{Counters, Frame};
+use super::{Counters, Frame, PixelRecord};
 use crate::geometry::HitLanes;
 
 /// Pixels along one side of a tile. 32 measured well: enough rays to amortise a stage, small enough to
@@ -28,6 +28,8 @@ pub struct Tile {
     pub sums: Box<Column3>,
     /// Hits of the first samples, if there is one.
     pub hits: Box<HitLanes<PLACES>>,
+    /// What the first samples found, by place; empty unless they were asked for.
+    pub records: Vec<PixelRecord>,
     knows_hits: bool,
 }
 
@@ -47,13 +49,15 @@ impl Tile {
             counters: Counters::default(),
             sums: Box::new([Column::splat(0.0); 3]),
             hits: Box::new(HitLanes::none()),
+            records: Vec::new(),
             knows_hits: false,
         }
     }
 
     /// Forgets the picture; and the hits too, unless they are still true.
-    pub const fn reset(&mut self, keep_hits: bool) {
+    pub fn reset(&mut self, keep_hits: bool) {
         self.samples = 0;
+        self.records = Vec::new();
         self.counters = Counters::ZERO;
         self.knows_hits &= keep_hits;
     }
@@ -74,7 +78,8 @@ impl Tile {
         work.radiance = [Column::splat(0.0); 3];
         // The first sample's hits are kept for the next snapshot, which may only shade them anew.
         let hits = if index == 0 { &mut self.hits } else { hits };
-        if index > 0 || !self.knows_hits {
+        let is_unknown = index > 0 || !self.knows_hits;
+        if is_unknown || (watch.wants_every_ray() && frame.displaced.is_some()) {
             known.clear();
             // Hits on displaced surfaces are more than a cached hit can tell.
             let coarser = coarser.filter(|_| index == 0 && frame.displaced.is_none());
@@ -91,7 +96,10 @@ impl Tile {
                 hits.put(place, hit);
             }
             self.knows_hits = true;
+        } else {
+            work.tracer.clear();
         }
+        watch.traced(&self.pixels.active, &work.tracer);
         watch.done(Stage::Trace);
         work.shade_hits(frame, hits, stages::mirrors_at(frame, 0), counters, watch);
         scratch.follow_mirrors(frame, counters, watch);

@@ -7,6 +7,7 @@ pub mod load;
 mod open;
 pub mod save_picture;
 mod settings;
+mod view;
 mod warning;
 
 use std::path::PathBuf;
@@ -24,6 +25,7 @@ pub use open::{built_in_names, open};
 pub use settings::{
     Background, BentNormals, DisplaySettings, RenderSettings, ShadingModel, ShadingSettings,
 };
+pub use view::{View, ViewKind};
 pub use warning::{LoadError, LoadWarning};
 
 /// Where a scene came from.

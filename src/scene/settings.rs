@@ -2,16 +2,23 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Camera;
+use super::{Camera, View};
+use crate::geometry::{Kernel, OffsetRule};
 use crate::math::LinearRgb;
 use crate::shading::{Light, Material};
 use crate::surface::mapping::MappingSettings;
 
-/// Changes of these re-encode the picture; nothing is traced or shaded.
+/// Changes of these re-encode the picture; nothing is traced or shaded, unless a view needs what was not noted.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DisplaySettings {
     /// Exposure in stops: the picture is multiplied by `2^exposure_ev` before sRGB encoding.
     pub exposure_ev: f32,
+    /// What is shown. Some views need records of the pixels, which are made from the first sample on.
+    pub view: View,
+    /// The ray–triangle test that the views `leaks` and `false-shadows` compare with the program's own.
+    pub kernel: Kernel,
+    /// The offset of leaving rays that `false-shadows` compares with the program's own.
+    pub offset_rule: OffsetRule,
 }
 
 /// Which reflection model turns light into colour.

@@ -12,7 +12,7 @@ use super::document::Document;
 use super::loader::{AddedPicture, Loaded, Loader};
 use super::meter::Meter;
 use super::pacing::Pacing;
-use super::panels::{self, Action, PanelContext, UiState};
+use super::panels::{self, Action, PanelContext, Place, UiState};
 use super::picking::Projection;
 use super::preferences::Preferences;
 use super::status::{self, Progress, Status};
@@ -20,7 +20,7 @@ use super::story::{Story, story_ui};
 use super::toasts::Toasts;
 use super::viewport::{self, Framebuffer, Side, ViewportClick};
 use super::worker::{FirstPass, FrameStats, Refinement, RenderNote, RenderRequest, RenderWorker};
-use super::{ViewOptions, compare_view, light_markers, loading, theme, windows};
+use super::{ViewOptions, compare_view, legend, light_markers, loading, theme, windows};
 use crate::measure::feel::{Feel, FeelLog};
 use crate::render::{Progressive, Snapshot};
 use crate::scene::built_in::SCENES;
@@ -171,6 +171,15 @@ impl ViewerApp {
         self.report(opened.map_err(|error| format!("Could not start loading: {error}")));
     }
 
+    /// Puts the built-in scene elsewhere.
+    fn place(&mut self, place: Place) {
+        let opened = self
+            .loader
+            .open_as(place.name.clone().into(), place.normalize);
+        self.report(opened.map_err(|error| format!("Could not start loading: {error}")));
+        self.state.place = Some(place);
+    }
+
     fn report(&mut self, result: Result<(), String>) {
         if let Err(text) = result {
             self.toasts.error(text);
@@ -228,6 +237,7 @@ impl ViewerApp {
     }
 
     fn finish_load(&mut self, input: &Path, result: Result<LoadedScene, LoadError>) {
+        let place = self.state.place.take();
         match result {
             Ok(loaded) => {
                 for warning in &loaded.warnings {
@@ -242,7 +252,11 @@ impl ViewerApp {
                 if input.is_file() {
                     self.preferences.note_opened(input);
                 }
-                self.take_scene(loaded);
+                let is_placed = place.is_some_and(|place| Path::new(&place.name) == input);
+                match self.doc.take().filter(|_| is_placed) {
+                    Some(before) => self.doc = Some(before.put_to(loaded)),
+                    None => self.take_scene(loaded),
+                }
             }
             Err(LoadError::Cancelled) => self.toasts.note("Loading was cancelled."),
             Err(error) => {
@@ -346,6 +360,7 @@ impl ViewerApp {
         match action {
             Action::Run(command) => self.run(ctx, command),
             Action::Open(path) => self.open(path),
+            Action::Place(place) => self.place(place),
             Action::SaveScene(path) => self.save_scene(&path),
             Action::SavePicture(path) => self.worker.save_picture(path),
             Action::AddPicture(material, slot, path) => self.add_picture(path, material, slot),
@@ -382,6 +397,8 @@ impl ViewerApp {
             }
             Command::ExposureUp => *exposure = brighter(*exposure + EXPOSURE_STEP),
             Command::ExposureDown => *exposure = brighter(*exposure - EXPOSURE_STEP),
+            Command::NextView => doc.display.view = doc.display.view.next(),
+            Command::PreviousView => doc.display.view = doc.display.view.previous(),
             Command::ToggleCompare => doc.comparison.on = !doc.comparison.on,
             Command::ToggleError => doc.comparison.toggle_error(),
             Command::Select(method) => doc.settings.mapping.method = method,
@@ -533,7 +550,7 @@ impl ViewerApp {
 
     fn overlays_ui(&mut self, ctx: &egui::Context, window: Rect) {
         if let Some(doc) = &self.doc {
-            compare_view::legend_ui(ctx, &doc.comparison);
+            legend::legend_ui(ctx, self.framebuffer.stats(), &doc.comparison);
         }
         windows::help_ui(ctx, &mut self.state.help);
         story_ui(ctx, &mut self.state.story);
@@ -556,7 +573,7 @@ impl ViewerApp {
                 settings,
                 size: self.size,
             },
-            exposure_ev: doc.display.exposure_ev,
+            display: doc.display,
             first_pass: if self.preferences.preview {
                 FirstPass::Adaptive
             } else {

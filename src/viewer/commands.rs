@@ -29,6 +29,10 @@ pub enum Command {
     ToggleCompare,
     /// Show how far the two are apart, or the second picture.
     ToggleError,
+    /// Show normals, texture coordinates, steps and so on in place of the picture.
+    NextView,
+    /// The same the other way round.
+    PreviousView,
     /// A third of a stop brighter.
     ExposureUp,
     /// A third of a stop darker.
@@ -134,6 +138,8 @@ pub fn table() -> Vec<CommandInfo> {
             "Error in false colours",
             &[plain(Key::X)],
         ),
+        row(C::NextView, G::View, "Next view", &[plain(Key::V)]),
+        row(C::PreviousView, G::View, "Previous view", &[shift(Key::V)]),
         row(C::ExposureUp, G::View, "Brighter", &[plain(Key::E)]),
         row(C::ExposureDown, G::View, "Darker", &[shift(Key::E)]),
         row(

@@ -1,14 +1,11 @@
-//! The pictures A and B in the window: the wipe's line, their names, and what the false colours mean.
+//! The pictures A and B in the window: the wipe's line and their names.
 
 use egui::{
-    Align2, Area, Color32, CursorIcon, FontId, Id, Key, Order, Painter, PointerButton, Rect, Role,
-    Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Color32, CursorIcon, FontId, Id, Key, Painter, PointerButton, Rect, Role, Sense, Shape,
+    Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
-use super::comparison::{Comparison, Layout};
-use super::false_color::false_color;
-use super::status;
-use super::theme;
+use super::comparison::{Comparison, Layout, second_label};
 use super::viewport::{Framebuffer, Side};
 
 /// Half the width of what can be grabbed around the line, points.
@@ -17,8 +14,6 @@ const GRAB: f32 = 7.0;
 const MARGIN: f32 = 10.0;
 /// The key that shows B.
 const HOLD: Key = Key::B;
-/// Columns and rows of the legend's bar, points.
-const BAR: Vec2 = vec2(220.0, 12.0);
 
 /// Paints both pictures while two methods are compared, and says so; then the line between them can be
 /// dragged. A single picture it leaves to the caller.
@@ -62,7 +57,7 @@ pub fn pictures_ui(
 }
 
 fn other_name(comparison: &Comparison) -> String {
-    let method = comparison.method.info().label;
+    let method = second_label(comparison.method);
     match comparison.error {
         Some(metric) => format!("A against {method} · {}", metric.label()),
         None => format!("B · {method}"),
@@ -116,62 +111,4 @@ fn name_ui(ui: &Ui, part: Rect, x: f32, align: Align2, name: &str) {
     let id = Id::unique("picture name").with(name);
     let response = ui.interact(rect, id, Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
-}
-
-/// The bar of false colours with its numbers, in the corner above the status line.
-pub fn legend_ui(ctx: &egui::Context, comparison: &Comparison) {
-    let Some(metric) = comparison.error.filter(|_| comparison.on) else {
-        return;
-    };
-    let offset = vec2(MARGIN, -status::HEIGHT - MARGIN);
-    Area::new(Id::unique("error legend"))
-        .anchor(Align2::LEFT_BOTTOM, offset)
-        .order(Order::Middle)
-        .show(ctx, |ui| {
-            theme::glass().show(ui, |ui| {
-                ui.label(format!("Error: {}", metric.label()));
-                bar_ui(ui, comparison.full_scale);
-            });
-        });
-}
-
-fn bar_ui(ui: &mut Ui, full_scale: f32) {
-    let (rect, response) = ui.allocate_exact_size(BAR + vec2(0.0, 18.0), Sense::hover());
-    let numbers = [0.0, 0.5, 1.0].map(|t| scale_text(t * full_scale));
-    let name = format!("Colours from 0 to {}", numbers[2]);
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
-    let painter = ui.painter();
-    let columns = BAR.x as usize;
-    for i in 0..columns {
-        let corner = rect.min + vec2(i as f32, 0.0);
-        let color = false_color((i as f32 + 0.5) / columns as f32);
-        painter.rect_filled(Rect::from_min_size(corner, vec2(1.0, BAR.y)), 0.0, color);
-    }
-    let y = rect.top() + BAR.y + 4.0;
-    let places = [
-        (rect.left(), Align2::LEFT_TOP),
-        (rect.center().x, Align2::CENTER_TOP),
-        (rect.right(), Align2::RIGHT_TOP),
-    ];
-    for ((x, align), text) in places.into_iter().zip(numbers) {
-        let font = FontId::monospace(11.5);
-        painter.text(pos2(x, y), align, text, font, theme::TEXT);
-    }
-}
-
-/// Up to four decimals, without zeros at the end: "0.125", "1".
-fn scale_text(value: f32) -> String {
-    let text = format!("{value:.4}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::scale_text;
-
-    #[test]
-    fn numbers_of_the_scale_are_short() {
-        let texts = [0.0, 0.125, 0.5, 1.0].map(scale_text);
-        assert_eq!(texts, ["0", "0.125", "0.5", "1"]);
-    }
 }

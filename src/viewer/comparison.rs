@@ -6,6 +6,8 @@ use super::worker::{Compare, ErrorView};
 use crate::measure::error_map::ErrorMetric;
 use crate::surface::mapping::Method;
 
+/// What the other method is at first: the relief as real geometry.
+pub const TRUTH: Method = Method::Displacement;
 /// Points between the pictures side by side.
 const GAP: f32 = 2.0;
 
@@ -53,11 +55,29 @@ pub struct Comparison {
     pub full_scale: f32,
 }
 
+/// A method's name in the list of second methods.
+#[must_use]
+pub const fn second_name(method: Method) -> &'static str {
+    match method {
+        TRUTH => "displacement (the truth)",
+        other => other.name(),
+    }
+}
+
+/// What the picture by a second method is called.
+#[must_use]
+pub const fn second_label(method: Method) -> &'static str {
+    match method {
+        TRUTH => "Displacement, the truth",
+        other => other.info().label,
+    }
+}
+
 impl Default for Comparison {
     fn default() -> Self {
         Self {
             on: false,
-            method: Method::Exact,
+            method: TRUTH,
             layout: Layout::default(),
             split: 0.5,
             error: None,

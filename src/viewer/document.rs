@@ -8,7 +8,8 @@ use glam::DVec3;
 
 use super::comparison::Comparison;
 use crate::scene::{
-    DisplaySettings, LoadWarning, LoadedScene, RenderSettings, Scene, SceneSource, ShadingSettings,
+    Camera, DisplaySettings, LoadWarning, LoadedScene, RenderSettings, Scene, SceneSource,
+    ShadingSettings,
 };
 use crate::shading::{Light, Material};
 use crate::surface::mapping::MappingSettings;
@@ -58,6 +59,29 @@ impl Document {
             warnings: loaded.warnings,
             undo,
         }
+    }
+
+    /// The same scene put elsewhere: mapping, shading, samples and what is shown stay, and the camera goes along.
+    /// Lights and materials are those of the scene.
+    #[must_use]
+    pub fn put_to(self, loaded: LoadedScene) -> Self {
+        let ([min, max], extent) = (self.bounds(), self.extent());
+        let mut placed = Self::new(loaded);
+        let ([to_min, to_max], ratio) = (placed.bounds(), placed.extent() / extent);
+        let put = |p: DVec3| (p - (min + max) * 0.5) * ratio + (to_min + to_max) * 0.5;
+        let settings = &mut placed.settings;
+        settings.camera = Camera {
+            eye: put(self.settings.camera.eye),
+            target: put(self.settings.camera.target),
+            ..self.settings.camera
+        };
+        settings.mapping = self.settings.mapping;
+        settings.mapping.amplitude = self.settings.mapping.amplitude.map(|a| a * ratio);
+        settings.shading = self.settings.shading;
+        settings.samples = self.settings.samples;
+        placed.display = self.display;
+        placed.comparison = self.comparison;
+        placed
     }
 
     /// The scene file that it was read from, where saving goes without asking.

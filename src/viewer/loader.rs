@@ -60,10 +60,18 @@ impl Loader {
     /// # Errors
     /// If the system gives no thread.
     pub fn open(&mut self, input: PathBuf) -> std::io::Result<()> {
+        self.open_as(input, self.normalize)
+    }
+
+    /// [`Self::open`], normalised or not whatever the others are.
+    ///
+    /// # Errors
+    /// If the system gives no thread.
+    pub fn open_as(&mut self, input: PathBuf, normalize: bool) -> std::io::Result<()> {
         self.cancel();
         let monitor = Arc::new(LoadMonitor::default());
         let options = LoadOptions {
-            normalize: self.normalize,
+            normalize,
             monitor: Arc::clone(&monitor),
         };
         let path = input.clone();

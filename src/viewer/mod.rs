@@ -6,7 +6,7 @@
 //! - `feel`: a scripted hand, for measuring
 //! - `document`: what is open, and undo
 //! - `viewport`, `picking`, `light_markers`: the mouse in the picture
-//! - `comparison`, `compare_view`, `false_color`: two methods in one view, and how far they are apart
+//! - `comparison`, `compare_view`: two methods in one view, and how far they are apart; `legend`: what colours mean
 //! - `panels`, `status`, `windows`, `toasts`, `widgets`, `color_edit`, `theme`: what is drawn over it
 //! - `trade`: what accuracy costs, measured on a thread of its own
 //! - `commands`: the table behind keys, menu and help
@@ -21,8 +21,8 @@ mod compare_view;
 pub mod comparison;
 mod dialogs;
 pub mod document;
-mod false_color;
 mod feel;
+mod legend;
 mod light_markers;
 mod loader;
 mod loading;

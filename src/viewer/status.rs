@@ -6,6 +6,7 @@ use egui::{Align2, Area, Color32, Id, Order, Rect, RichText, Ui};
 use super::theme;
 use super::worker::FrameStats;
 use crate::measure::feel::Feel;
+use crate::scene::ViewKind;
 
 /// Height of the line, points.
 pub const HEIGHT: f32 = 30.0;
@@ -133,9 +134,25 @@ fn line_ui(ui: &mut Ui, status: &Status<'_>) {
     );
     item_ui(ui, status.method, Color32::WHITE, "Method in use");
     if let Some(error) = &stats.error {
-        let text = format!("mean {:.4} p95 {:.4}", error.mean, error.p95);
+        let unit = error.metric.unit();
+        let text = format!("mean {:.4} p95 {:.4}{unit}", error.mean, error.p95);
         let hint = format!("Error of A against B: {}", error.metric.label());
         item_ui(ui, &text, theme::ACCENT, &hint);
+    }
+    if let Some(legend) = &stats.legend {
+        let name = legend.view.name();
+        let (text, color) = match legend.view.kind() {
+            ViewKind::Marks => (
+                format!("{} {name}", grouped(legend.marked)),
+                if legend.marked > 0 {
+                    theme::ERROR
+                } else {
+                    theme::GOOD
+                },
+            ),
+            _ => (format!("view {name}"), theme::ACCENT),
+        };
+        item_ui(ui, &text, color, legend.view.meaning());
     }
     let weak = theme::WEAK;
     let rate = rays_per_sec(stats) / 1e6;
@@ -166,7 +183,7 @@ fn line_ui(ui: &mut Ui, status: &Status<'_>) {
     item_ui(ui, &scale, weak, "Framebuffer and resolution scale");
     item_ui(
         ui,
-        &format!("{} triangles", grouped(status.triangles)),
+        &format!("{} triangles", grouped(status.triangles as u64)),
         weak,
         "Triangles in the model's file",
     );
@@ -219,7 +236,7 @@ fn rays_per_sec(stats: &FrameStats) -> f64 {
 }
 
 /// 1234567 → "1 234 567".
-fn grouped(n: usize) -> String {
+pub fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut text = String::new();
     for (i, digit) in digits.chars().enumerate() {

@@ -113,7 +113,7 @@ fn lists_name_everything() {
 #[test]
 fn bad_arguments_are_refused() {
     let folder = with_scene();
-    let cases: [(&[&str], &str); 14] = [
+    let cases: [(&[&str], &str); 16] = [
         (&["render", "scene.toml"], "--output"),
         (&["render", "-o", "a.png"], "<INPUT>"),
         (&["render", "scene.toml", "-o", "a.jpg"], ".png or .exr"),
@@ -122,6 +122,14 @@ fn bad_arguments_are_refused() {
         (
             &["render", "scene.toml", "-o", "a.png", "--size", "0x4"],
             "--size",
+        ),
+        (
+            &["render", "scene.toml", "-o", "a.exr", "--view", "uv"],
+            "written as .png",
+        ),
+        (
+            &["render", "scene.toml", "-o", "a.png", "--view", "colour"],
+            "invalid-normals",
         ),
         (
             &["render", "scene.toml", "-o", "a.png", "--samples", "0"],
@@ -231,6 +239,61 @@ fn render_writes_both_formats() {
             }
         }
     }
+}
+
+#[test]
+fn render_writes_views() {
+    let folder = with_scene();
+    good(&folder, &["render", "scene.toml", "-o", "plain.png"]);
+    let plain = picture(&folder, "plain.png");
+    let view = |name: &str| {
+        let file = format!("{name}.png");
+        let lines = good(
+            &folder,
+            &["render", "scene.toml", "-o", &file, "--view", name],
+        );
+        (lines, picture(&folder, &file))
+    };
+    let (lines, normals) = view("normals");
+    assert!(
+        lines.contains("normals: normal used for shading"),
+        "{lines}"
+    );
+    assert!(lines.contains("1 sample per pixel"), "{lines}");
+    assert_ne!(normals.samples, plain.samples);
+    // The plane faces +z: red and green in the middle, blue full.
+    let rgb = [0, 1, 2].map(|c| (normals.fraction(12, 8, c) * 255.0).round() as u8);
+    let off = rgb
+        .iter()
+        .zip([128, 128, 255])
+        .map(|(&a, b)| u8::abs_diff(a, b));
+    assert!(off.max() <= Some(3), "{rgb:?}");
+    let (lines, marks) = view("invalid-normals");
+    assert!(
+        lines.contains("invalid-normals") && lines.contains("0 pixels"),
+        "{lines}"
+    );
+    assert_eq!(marks.samples, plain.samples);
+    let (lines, samples) = view("samples");
+    assert!(
+        lines.contains("2 samples") && lines.contains("from 0 to 2"),
+        "{lines}"
+    );
+    assert_ne!(samples.samples, plain.samples);
+    // A scene file may ask for one; an EXR holds the picture's light all the same.
+    let set = ["--set", "display.view=normals"];
+    let mut arguments = vec!["render", "scene.toml", "-o", "set.png"];
+    arguments.extend(set);
+    good(&folder, &arguments);
+    assert_eq!(picture(&folder, "set.png").samples, normals.samples);
+    good(&folder, &["render", "scene.toml", "-o", "a.exr"]);
+    let mut arguments = vec!["render", "scene.toml", "-o", "b.exr"];
+    arguments.extend(set);
+    good(&folder, &arguments);
+    assert_eq!(
+        picture(&folder, "a.exr").samples,
+        picture(&folder, "b.exr").samples
+    );
 }
 
 #[test]

@@ -28,3 +28,4 @@ mod support;
 mod trade;
 #[cfg(feature = "viewer")]
 mod viewer;
+mod views;

@@ -11,7 +11,7 @@ use reliefscope::scene::file::{SaveError, SceneView, apply_overrides, read_scene
 use reliefscope::scene::load::LoadOptions;
 use reliefscope::scene::save_picture::write_png;
 use reliefscope::scene::{
-    Background, BentNormals, Camera, LoadError, LoadedScene, SceneSource, ShadingModel, open,
+    Background, BentNormals, Camera, LoadError, LoadedScene, SceneSource, ShadingModel, View, open,
 };
 use reliefscope::shading::{Falloff, Light, LightKind, Material};
 use reliefscope::surface::mapping::{Derivative, Lookup, Method, SearchSettings};
@@ -267,6 +267,7 @@ impl Random {
             self.material(material, images);
         }
         loaded.display.exposure_ev = self.unit() * 64.0 - 32.0;
+        loaded.display.view = View::ALL[self.below(View::ALL.len() as u32) as usize];
         loaded.size = self.maybe(|r| [1 + r.below(4000), 1 + r.below(4000)]);
     }
 }
@@ -541,6 +542,7 @@ fn values_out_of_range_are_named_with_line_and_key() {
         ("[render]", "size", "[65537, 1]"),
         ("[render]", "size", "[65536, 65536]"),
         ("[display]", "exposure_ev", "33"),
+        ("[display]", "view", "\"colour\""),
         ("[[light]]\nkind = \"ambient\"", "intensity", "-1"),
         ("[[light]]\nkind = \"ambient\"", "color", "[1, -1, 1]"),
         ("[[light]]\nkind = \"ambient\"", "position", "[1, 1, 1]"),
@@ -722,6 +724,7 @@ fn overrides_set_any_key() {
             ("render.size", "[64, 48]"),
             ("render.samples", "5"),
             ("display.exposure_ev", "-1.5"),
+            ("display.view", "invalid-normals"),
         ],
     )
     .expect("all keys exist");
@@ -741,6 +744,7 @@ fn overrides_set_any_key() {
     assert_eq!(settings.samples, 5);
     assert_eq!(loaded.size, Some([64, 48]));
     assert_eq!(loaded.display.exposure_ev, -1.5);
+    assert_eq!(loaded.display.view, View::InvalidNormals);
 }
 
 #[test]

@@ -8,5 +8,6 @@ mod files;
 mod navigation;
 mod same_picture;
 mod trade;
+mod views;
 mod wild;
 mod worker;

@@ -8,6 +8,7 @@ use super::placement::Placement;
 use super::trees::Trees;
 use super::watertight::towards;
 use super::{Finding, Plan, Random, Test};
+use crate::geometry::bvh::AcceptAll;
 use crate::geometry::{Ray, offset_origin};
 use crate::scene::Scene;
 use crate::surface::{SurfaceParts, surface_at};
@@ -88,7 +89,10 @@ impl<'a> Place<'a> {
             (u, v)
         };
         let ray = towards(eye, a + (b - a) * u + (c - a) * v);
-        let hit = self.plan.kernel.closest(self.trees.bvh(), &ray)?;
+        let hit = self
+            .plan
+            .kernel
+            .closest(self.trees.bvh(), &ray, &AcceptAll)?;
         let [a, b, c] = mesh.corners(hit.prim).map(|c| c.as_dvec3());
         let normal = (b - a).cross(c - a);
         let normal = normal / normal.length();

@@ -5,7 +5,6 @@
 //!
 //! - `plan`: how much is tested and with which kernel; what a test is and what it found
 //! - `run`: the tests on a pool, told in order
-//! - `kernel`, `woop`: the program's ray–triangle test and those of textbooks
 //! - `random`, `bodies`, `placement`, `trees`: rays and meshes, where they are put, the levels they are traced by
 //! - `oracle`: rays and triangles in `f64`, by brute force, with a margin of doubt
 //!
@@ -27,7 +26,6 @@ mod borders;
 mod contact;
 mod convex;
 mod faces;
-mod kernel;
 mod maps;
 mod methods;
 mod oracle;
@@ -39,13 +37,12 @@ mod shading;
 mod sweep;
 mod trees;
 mod watertight;
-mod woop;
 
-pub use kernel::{Kernel, OffsetRule};
+pub use crate::geometry::triangle::PlainWoop;
+pub use crate::geometry::{Kernel, OffsetRule};
 pub use plan::{Effort, Finding, Plan, Test};
 pub use random::Random;
 pub use run::{Outcome, run};
-pub use woop::PlainWoop;
 
 /// Every test of a plan, family by family.
 #[must_use]

@@ -52,12 +52,15 @@ impl Trees {
 
     /// Traces rays alone, and together at each level.
     pub fn trace(&self, rays: &[Ray]) -> Traced {
-        let alone = |ray| self.kernel.closest(&self.alone, ray);
+        let alone = |ray| self.kernel.closest(&self.alone, ray, &AcceptAll);
         let hits: Vec<_> = rays.iter().map(alone).collect();
         let far = vec![f32::INFINITY; rays.len()];
         let mut differs = vec![false; rays.len()];
         for (ray, (hit, differs)) in rays.iter().zip(hits.iter().zip(&mut differs)) {
-            *differs |= self.kernel.occluded(&self.alone, ray, f32::INFINITY) != hit.is_some();
+            *differs |= self
+                .kernel
+                .occluded(&self.alone, ray, f32::INFINITY, &AcceptAll)
+                != hit.is_some();
         }
         for twin in &self.twins {
             let mut found = vec![None; rays.len()];
@@ -77,7 +80,8 @@ impl Trees {
     /// Whether rays that end at `t_max` are stopped: how many are, and of how many a level says something else.
     pub fn shadows(&self, rays: &[Ray], t_max: &[f32]) -> (Vec<bool>, u64) {
         let pairs = rays.iter().zip(t_max);
-        let alone = pairs.map(|(ray, &t_max)| self.kernel.occluded(&self.alone, ray, t_max));
+        let alone =
+            pairs.map(|(ray, &t_max)| self.kernel.occluded(&self.alone, ray, t_max, &AcceptAll));
         let alone: Vec<_> = alone.collect();
         let mut differs = vec![false; rays.len()];
         for twin in &self.twins {

@@ -208,7 +208,8 @@ fn towards(light: &FrameLight, p: DVec3) -> DVec3 {
 }
 
 /// Angle between two directions, degrees, without the loss of `acos` near 0.
-fn angle_deg(a: DVec3, b: DVec3) -> f64 {
+#[must_use]
+pub fn angle_deg(a: DVec3, b: DVec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b)).to_degrees()
 }
 

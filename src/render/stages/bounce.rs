@@ -118,7 +118,7 @@ impl Kernel for MirrorRays<'_> {
                 };
                 let mut p = get3(simd, &from.p, group);
                 let mut bound = from.bound.get(simd, group);
-                if self.frame.materials[run.material].mapping.searches() {
+                if run.searches {
                     let sunk = from.relief.sunk.get(simd, group);
                     let way_out = relief::way_out((sunk, n_geo), wo, dir, run.kind.smooth);
                     p = p + way_out;

@@ -21,11 +21,11 @@ pub fn closest_hits(
     let places = with_rays(&rays.active, &rays.lanes.t_max);
     tracer.clear();
     for place in places.iter() {
-        tracer.push(rays.lanes.ray(place), rays.lanes.t_max.0[place]);
+        tracer.push_for(place, rays.lanes.ray(place), rays.lanes.t_max.0[place]);
     }
     tracer.keep(displaced.memory / rayon::current_num_threads());
     tracer.run(mesh, Search::Closest, frame.level);
-    counters.relief_steps += tracer.take_steps();
+    counters.relief_steps += tracer.steps();
     let mut lanes = hits.displaced.take().unwrap_or_default();
     lanes.places = Places::EMPTY;
     let ends = rays.lanes.t_max;
@@ -73,10 +73,10 @@ pub fn any_hits(
     let places = with_rays(&open, &shadows.rays.t_max);
     tracer.clear();
     for place in places.iter() {
-        tracer.push(shadows.rays.ray(place), shadows.rays.t_max.0[place]);
+        tracer.push_for(place, shadows.rays.ray(place), shadows.rays.t_max.0[place]);
     }
     tracer.run(mesh, Search::Any, frame.level);
-    counters.relief_steps += tracer.take_steps();
+    counters.relief_steps += tracer.steps();
     for (index, place) in places.iter().enumerate() {
         if tracer.is_hit(index) {
             shadows.occluded.insert(place);

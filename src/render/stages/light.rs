@@ -48,11 +48,12 @@ pub fn reflected_light(
         shadows.occluded = Places::EMPTY;
         if frame.shadows {
             watch.done(Stage::Shade);
-            relief::shadow_by_relief(frame, surfaces, shadows, walks, counters);
+            relief::shadow_by_relief(frame, surfaces, shadows, walks, counters, watch);
             watch.done(Stage::Perturb);
         }
         if frame.shadows && !shadows.lit.is_empty() {
             any_hits(frame, rays.count, shadows, tracer, counters);
+            watch.shadowed(frame, (rays, surfaces), (shadows, tracer));
             watch.done(Stage::Trace);
         }
         frame.level.run_or_plain(AddLight {
@@ -146,7 +147,7 @@ impl Kernel for AimAtLight<'_> {
                 lit = lit & n_geo.dot(light.wi).gt(zero) & n_shade.dot(light.wi).gt(zero);
                 let mut bound = from.bound.get(simd, group);
                 let mut base = p;
-                if material.mapping.searches() {
+                if run.searches {
                     let sunk = from.relief.sunk.get(simd, group);
                     let wo = -get3(simd, &self.rays.lanes.dir, group);
                     let way_out = relief::way_out((sunk, n_geo), wo, light.wi, run.kind.smooth);

@@ -20,6 +20,8 @@ mod watch;
 pub use walks::Walks;
 pub use watch::{Stage, StageWatch};
 
+use glam::Vec3;
+
 use super::{Counters, Frame};
 use crate::geometry::{CachedHit, HitLanes, RayLanes, TriangleAttributes};
 use crate::math::lanes::{Lanes, PlaceSet};
@@ -83,12 +85,14 @@ pub struct Run {
     pub kind: FacetKind,
     /// Whether they lie on a displaced surface, so that the hits know point and normal.
     pub displaced: bool,
+    /// Whether their places on a relief are searched for, so that [`ReliefPoints`] tell of them.
+    pub searches: bool,
     /// Where they are.
     pub places: Places,
 }
 
-/// What lights want to know of points that a search found on a relief. Read only where a material's mapping
-/// searches; what other places hold means nothing.
+/// What lights want to know of points that a search found on a relief. Read only in runs that
+/// search; what other places hold means nothing.
 #[derive(Debug)]
 pub struct ReliefPoints {
     /// How far under the triangle's plane each lies, along the geometric normal.
@@ -234,6 +238,7 @@ impl Work {
     ) {
         let (rays, surfaces, walks) = (&mut self.rays, &mut self.surfaces, &mut self.walks);
         surface::mapped_surfaces(frame, (rays, hits), surfaces, walks, counters);
+        watch.mapped(frame, (rays, hits), surfaces);
         watch.done(Stage::Perturb);
         let lists = (walks, &mut self.tracer);
         let (shadows, hit) = ((&mut self.shadows, lists), (&*rays, hits));
@@ -262,6 +267,7 @@ impl Scratch {
             }
             counters.mirror_rays += work.rays.active.count();
             trace::closest_hits(frame, &mut work.rays, hits, &mut work.tracer, counters);
+            watch.traced(&work.rays.active, &work.tracer);
             watch.done(Stage::Trace);
             work.shade_hits(frame, hits, mirrors_at(frame, bounce), counters, watch);
         }
@@ -282,6 +288,12 @@ pub fn mirrors_at(frame: &Frame<'_>, bounce: u32) -> Mirrors {
 #[inline(always)]
 const fn groups<S: Simd>(count: usize) -> usize {
     count.div_ceil(S::f32s::LEN)
+}
+
+/// The vector in a place.
+#[must_use]
+pub fn vec_at([x, y, z]: &Column3, place: usize) -> Vec3 {
+    Vec3::new(x.0[place], y.0[place], z.0[place])
 }
 
 /// One vector per lane of a group.

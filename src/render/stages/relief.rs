@@ -3,7 +3,7 @@
 
 use super::super::{Counters, Frame};
 use super::walks::Walks;
-use super::{Column, Places, Shadows, Surfaces, get3};
+use super::{Column, Places, Shadows, StageWatch, Surfaces, get3};
 use crate::math::simd::{Kernel, Simd};
 use crate::math::wide::Wide;
 use crate::math::{Real, V3};
@@ -31,6 +31,7 @@ pub fn shadow_by_relief(
     shadows: &mut Shadows,
     walks: &mut Walks,
     counters: &mut Counters,
+    watch: &mut impl StageWatch,
 ) {
     for run in &surfaces.runs {
         let material = &frame.materials[run.material];
@@ -58,6 +59,7 @@ pub fn shadow_by_relief(
             }
         }
         counters.relief_steps += walks.run(field, frame.level);
+        watch.walked(walks);
         let in_the_way = walks.iter().filter(|(_, _, walk)| walk.at.is_some());
         let shadowed = in_the_way.map(|(place, ..)| place);
         for place in shadowed.chain((lit & rays.under).iter()) {

@@ -51,7 +51,7 @@ pub fn mapped_surfaces(
             run,
             surfaces,
         });
-        if frame.materials[run.material].mapping.searches() {
+        if run.searches {
             let steps = &surfaces.relief.steps;
             let taken = run.places.iter().map(|place| f64::from(steps.0[place]));
             counters.relief_steps += taken.sum::<f64>() as u64;
@@ -106,14 +106,17 @@ fn run_of(frame: &Frame<'_>, prim: u32, runs: &mut Vec<Run>, likely: usize) -> u
     }
     let known = runs.iter().position(|run| run.attributes == attributes);
     known.unwrap_or_else(|| {
-        let material = usize::from(attributes.material);
+        let index = usize::from(attributes.material);
+        let material = &frame.materials[index];
+        let parts = material.parts(attributes.has_uv);
         runs.push(Run {
             attributes,
-            material,
+            material: index,
             kind: FacetKind {
                 smooth: attributes.smooth,
-                parts: frame.materials[material].parts(attributes.has_uv),
+                parts,
             },
+            searches: parts == SurfaceParts::Gradients && material.mapping.searches(),
             displaced: frame.displaces(attributes),
             places: Places::EMPTY,
         });
@@ -126,11 +129,19 @@ fn count(material: &FrameMaterial<'_>, run: &Run, counters: &mut Counters) {
     let points = run.places.count();
     if run.kind.parts == SurfaceParts::Gradients {
         counters.perturbations += points;
-        counters.texture_fetches += points * material.mapping.fetches_per_point();
     }
-    if material.albedo.is_some() && run.kind.parts >= SurfaceParts::Uv {
-        counters.texture_fetches += points;
-    }
+    counters.texture_fetches += points * fetches_per_point(material, run);
+}
+
+/// Look-ups that a point of a run costs, beside the steps of a search.
+pub fn fetches_per_point(material: &FrameMaterial<'_>, run: &Run) -> u64 {
+    let mapping = if run.kind.parts == SurfaceParts::Gradients {
+        material.mapping.fetches_per_point()
+    } else {
+        0
+    };
+    let has_color = material.albedo.is_some() && run.kind.parts >= SurfaceParts::Uv;
+    mapping + u64::from(has_color)
 }
 
 /// The texture coordinates of a run's points, and how they change along the view rays.
@@ -199,8 +210,7 @@ impl Kernel for MapRun<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let material = &self.frame.materials[self.run.material];
-        let searches =
-            self.run.kind.parts == SurfaceParts::Gradients && material.mapping.searches();
+        let searches = self.run.searches;
         let walked = material.mapping.walks().is_some() && searches;
         let mut facets = Facets::new(self.frame, self.run.kind);
         for group in self.run.places.groups::<S>() {

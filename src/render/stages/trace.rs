@@ -21,6 +21,7 @@ pub fn closest_hits(
     match &frame.displaced {
         Some(relief) => displaced::closest_hits(frame, relief, rays, hits, tracer, counters),
         None => {
+            tracer.clear();
             hits.displaced = None;
             plain_closest_hits(frame, rays, hits, counters);
         }
@@ -56,7 +57,10 @@ pub fn any_hits(
     counters.shadow_rays += shadows.lit.count();
     match &frame.displaced {
         Some(relief) => displaced::any_hits(frame, relief, count, shadows, tracer, counters),
-        None => plain_any_hits(frame, count, shadows, counters),
+        None => {
+            tracer.clear();
+            plain_any_hits(frame, count, shadows, counters);
+        }
     }
 }
 

@@ -7,10 +7,12 @@ mod assemble;
 pub mod maps;
 pub mod meshes;
 mod palette;
+mod placement;
 mod scenes;
 
 pub use assemble::assemble;
 pub use palette::{Finish, Palette};
+pub use placement::Placement;
 
 use super::LoadedScene;
 use super::load::LoadOptions;
@@ -28,7 +30,7 @@ pub struct BuiltInInfo {
 }
 
 /// Every generated scene, in the order of menus. The first is what a user sees who names none.
-pub const SCENES: [BuiltInInfo; 8] = [
+pub const SCENES: [BuiltInInfo; 9] = [
     BuiltInInfo {
         name: "wall",
         label: "Brick wall",
@@ -77,6 +79,12 @@ pub const SCENES: [BuiltInInfo; 8] = [
         summary: "A torus of 102,400 triangles alone, matte, with two lights: for comparing speed.",
         stage: scenes::torus_study,
     },
+    BuiltInInfo {
+        name: "extremes",
+        label: "Extremes",
+        summary: "Closed bodies in hard light: put them where numbers run out (extremes@1e6,1e4).",
+        stage: scenes::extremes,
+    },
 ];
 
 /// The scene that opens when none is named.
@@ -85,9 +93,11 @@ pub const fn default_name() -> &'static str {
     SCENES[0].name
 }
 
-/// Builds a generated scene by name; `None` if there is none of that name.
+/// Builds a generated scene by name, put where the name says (see [`Placement`]); `None` if there is none of that
+/// name.
 #[must_use]
 pub fn built_in(name: &str, options: &LoadOptions) -> Option<LoadedScene> {
-    let info = SCENES.iter().find(|info| info.name == name)?;
-    Some((info.stage)().finish(info, options))
+    let (scene, placement) = Placement::split(name)?;
+    let info = SCENES.iter().find(|info| info.name == scene)?;
+    Some((info.stage)().finish(info, placement, options))
 }

@@ -25,7 +25,11 @@ pub(super) fn apply(
     apply_shading(&document.shading, &mut settings.shading);
     apply_mapping(&document.mapping, &mut settings.mapping);
     put(&mut settings.samples, document.samples);
-    put(&mut loaded.display.exposure_ev, document.exposure_ev);
+    let (display, keys) = (&mut loaded.display, &document.display);
+    put(&mut display.exposure_ev, keys.exposure_ev);
+    put(&mut display.view, keys.view);
+    put(&mut display.kernel, keys.kernel);
+    put(&mut display.offset_rule, keys.offset_rule);
     loaded.size = document.size.or(loaded.size);
 
     if document.materials.is_empty() {

@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
+use crate::geometry::{Kernel, OffsetRule};
 use crate::math::LinearRgb;
-use crate::scene::{Background, BentNormals, ShadingModel};
+use crate::scene::{Background, BentNormals, ShadingModel, View};
 use crate::shading::Light;
 use crate::surface::mapping::{Derivative, Lookup, Method};
 use crate::texture::{Channel, MapRole, Wrap};
@@ -52,8 +53,21 @@ pub(super) struct Document {
     pub size: Option<[u32; 2]>,
     /// `[render] samples`.
     pub samples: Option<u32>,
-    /// `[display] exposure_ev`, stops.
+    /// `[display]`.
+    pub display: DisplayKeys,
+}
+
+/// `[display]`.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct DisplayKeys {
+    /// `exposure_ev`, stops.
     pub exposure_ev: Option<f32>,
+    /// `view`.
+    pub view: Option<View>,
+    /// `kernel`.
+    pub kernel: Option<Kernel>,
+    /// `offset_rule`.
+    pub offset_rule: Option<OffsetRule>,
 }
 
 /// `[camera]`, world units and degrees.

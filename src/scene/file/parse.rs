@@ -3,13 +3,14 @@
 use toml::de::DeTable;
 
 use super::document::{
-    CameraKeys, Document, MappingKeys, ModelName, OrDefault, Placed, ShadingKeys,
+    CameraKeys, DisplayKeys, Document, MappingKeys, ModelName, OrDefault, Placed, ShadingKeys,
 };
 use super::fault::{Fault, Read};
 use super::parse_light::lights;
 use super::parse_material::materials;
 use super::section::{Item, Limits, Section};
-use crate::scene::{Background, BentNormals, ShadingModel};
+use crate::geometry::{Kernel, OffsetRule};
+use crate::scene::{Background, BentNormals, ShadingModel, View};
 use crate::surface::mapping::{Derivative, Lookup, MappingSettings, Method, SearchSettings};
 
 /// Most columns or rows of a picture.
@@ -61,7 +62,7 @@ fn document(text: &str) -> Read<Document> {
     let mapping = mapping(&mut root)?;
     let materials = materials(&mut root)?;
     let (size, samples) = render(&mut root)?;
-    let exposure_ev = display(&mut root)?;
+    let display = display(&mut root)?;
     root.finish()?;
     Ok(Document {
         model,
@@ -73,7 +74,7 @@ fn document(text: &str) -> Read<Document> {
         materials,
         size,
         samples,
-        exposure_ev,
+        display,
     })
 }
 
@@ -222,15 +223,22 @@ fn render(root: &mut Section<'_>) -> Read<(Option<[u32; 2]>, Option<u32>)> {
     Ok((size, samples))
 }
 
-fn display(root: &mut Section<'_>) -> Read<Option<f32>> {
+fn display(root: &mut Section<'_>) -> Read<DisplayKeys> {
     let Some(mut table) = root.section("display")? else {
-        return Ok(None);
+        return Ok(DisplayKeys::default());
     };
-    let exposure_ev = table.read("exposure_ev", |x| {
-        x.single(Limits::Within(-MAX_EXPOSURE_EV, MAX_EXPOSURE_EV))
-    })?;
+    let keys = DisplayKeys {
+        exposure_ev: table.read("exposure_ev", |x| {
+            x.single(Limits::Within(-MAX_EXPOSURE_EV, MAX_EXPOSURE_EV))
+        })?,
+        view: table.read("view", |x| x.choice(&View::ALL, View::name))?,
+        kernel: table.read("kernel", |x| x.choice(&Kernel::ALL, Kernel::name))?,
+        offset_rule: table.read("offset_rule", |x| {
+            x.choice(&OffsetRule::ALL, OffsetRule::name)
+        })?,
+    };
     table.finish()?;
-    Ok(exposure_ev)
+    Ok(keys)
 }
 
 /// A relief's height, world units, or "default".

@@ -95,6 +95,9 @@ pub(super) fn scene_text(view: &SceneView<'_>, base: &Path) -> Result<String, Sa
     text.raw("samples", view.settings.samples);
     text.table("display");
     text.single("exposure_ev", view.display.exposure_ev)?;
+    text.string("view", view.display.view.name());
+    text.string("kernel", view.display.kernel.name());
+    text.string("offset_rule", view.display.offset_rule.name());
     Ok(text.finish())
 }
 

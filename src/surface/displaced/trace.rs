@@ -52,12 +52,16 @@ pub enum Search {
 /// A ray, where it ends, and what it has met.
 #[derive(Debug, Clone, Copy)]
 struct Asked {
+    /// Whose ray it is.
+    place: usize,
     ray: Ray,
     best: Best,
     /// Triangle of the micro-triangle that was met.
     fine: Option<(u32, Cut)>,
     /// Triangle of the flat relief that was met, and the distance in doubles.
     flat: Option<(u32, f64)>,
+    /// Steps of walks, and parts cut up or made.
+    steps: u64,
 }
 
 /// A walk over the flat relief of a triangle, for one of the rays.
@@ -81,8 +85,6 @@ pub struct Tracer {
     nodes: NodeCache,
     /// Bytes that the boxes kept may take.
     budget: usize,
-    /// Steps of walks, and parts cut up or made, since the last [`Self::take_steps`].
-    steps: u64,
 }
 
 impl Default for Tracer {
@@ -94,7 +96,6 @@ impl Default for Tracer {
             walks: Vec::new(),
             nodes: NodeCache::default(),
             budget: USUAL_BUDGET,
-            steps: 0,
         }
     }
 }
@@ -164,7 +165,13 @@ impl Tracer {
 
     /// Adds a ray that ends at `t_max`.
     pub fn push(&mut self, ray: Ray, t_max: f32) {
+        self.push_for(0, ray, t_max);
+    }
+
+    /// Adds the ray of a place, to be told apart in [`Self::steps_by_place`].
+    pub fn push_for(&mut self, place: usize, ray: Ray, t_max: f32) {
         self.asked.push(Asked {
+            place,
             ray,
             best: Best {
                 t: t_max,
@@ -172,12 +179,19 @@ impl Tracer {
             },
             fine: None,
             flat: None,
+            steps: 0,
         });
     }
 
-    /// Steps taken so far, counted anew from here.
-    pub const fn take_steps(&mut self) -> u64 {
-        std::mem::replace(&mut self.steps, 0)
+    /// Steps that all rays of the list took.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.asked.iter().map(|asked| asked.steps).sum()
+    }
+
+    /// The rays' places, and the steps that each took.
+    pub fn steps_by_place(&self) -> impl Iterator<Item = (usize, u64)> {
+        self.asked.iter().map(|asked| (asked.place, asked.steps))
     }
 
     /// Finds what all rays meet.
@@ -207,9 +221,9 @@ impl Tracer {
             self.walks.resize(self.rays.len(), Walk::NONE);
             field.walk_all(level, &self.rays, &mut self.walks);
             for (job, walk) in self.jobs.iter().filter(this).zip(&self.walks) {
-                self.steps += u64::from(walk.steps);
-                let Some(at) = walk.at else { continue };
                 let asked = &mut self.asked[job.asked];
+                asked.steps += u64::from(walk.steps);
+                let Some(at) = walk.at else { continue };
                 let t = job.from + at;
                 let nearer = match asked.flat {
                     Some((prim, known)) => t < known || (t == known && job.prim < prim),
@@ -321,8 +335,8 @@ impl Kernel for Visit<'_, '_, '_> {
                     break;
                 }
             }
+            let FineCounters { parts, leaves } = std::mem::take(&mut meeting.counters);
+            asked.steps += parts + leaves;
         }
-        let FineCounters { parts, leaves } = meeting.counters;
-        self.tracer.steps += parts + leaves;
     }
 }

@@ -1,6 +1,8 @@
 //! The one door through which maps change a surface.
 
-use super::relief::{Found, Layers, Refinement, ReliefField, cone_steps, exact, iterate, march};
+use super::relief::{
+    Found, Layers, Refinement, ReliefField, cone_steps, exact, iterate, march, most_steps,
+};
 use super::{BoundHeight, BoundNormal, Derivative, Lookup, MappingSettings, Method};
 use crate::math::{Real, V2, V3, gamma};
 use crate::surface::SurfaceInteraction;
@@ -131,6 +133,20 @@ impl<'a> MaterialMapping<'a> {
     #[must_use]
     pub const fn searches(&self) -> bool {
         matches!(self.shift, Shift::Search(_))
+    }
+
+    /// Steps at which the search for a point gives up; `None` without a search, and for those that cannot stop
+    /// short: layers end at the relief's bottom, and `iterative` always takes all its steps.
+    #[must_use]
+    pub fn most_steps(&self, s: &SurfaceInteraction) -> Option<f32> {
+        let Shift::Search(search) = &self.shift else {
+            return None;
+        };
+        match search {
+            Search::Iterate(..) | Search::March(..) => None,
+            Search::Cones(_, _, [steps, bisections]) => Some((steps + bisections) as f32),
+            Search::Exact(field) => Some(most_steps(field, s)),
+        }
     }
 
     /// The relief that is walked for every point: such points can be walked for together.

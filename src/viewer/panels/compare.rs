@@ -5,7 +5,7 @@ use egui::Ui;
 use super::PanelContext;
 use crate::measure::error_map::ErrorMetric;
 use crate::surface::mapping::Method;
-use crate::viewer::comparison::Layout;
+use crate::viewer::comparison::{Layout, second_name};
 use crate::viewer::widgets::{Caption, Number, choice_ui, number_ui, slider_ui};
 
 pub(super) fn compare_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
@@ -21,7 +21,7 @@ pub(super) fn compare_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
             caption,
             &mut comparison.method,
             &Method::ALL,
-            Method::name,
+            second_name,
         );
         let caption = Caption::new("Layout");
         choice_ui(
@@ -36,7 +36,8 @@ pub(super) fn compare_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
             slider_ui(ui, caption, 0.0..=1.0, &mut comparison.split, Some(&0.5));
         });
         let mut error = comparison.error;
-        let errors = [None, Some(ErrorMetric::Luma), Some(ErrorMetric::Flip)];
+        let mut errors = vec![None];
+        errors.extend(ErrorMetric::ALL.map(Some));
         let label = |error: Option<ErrorMetric>| error.map_or("picture B", ErrorMetric::label);
         choice_ui(
             ui,
@@ -47,10 +48,11 @@ pub(super) fn compare_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
         );
         comparison.show_error(error);
         if let Some(metric) = error {
+            let most = f64::from(metric.most_full_scale());
             number_ui(
                 ui,
                 Caption::new("Full scale"),
-                &Number::within(0.001..=1.0, 0.002),
+                &Number::within(0.001..=most, most * 0.002),
                 &mut comparison.full_scale,
                 Some(&metric.usual_full_scale()),
             );

@@ -223,7 +223,7 @@ fn amplitude_ui(ui: &mut Ui, doc: &mut Document) {
 }
 
 /// The largest amplitude that a material with a relief map would have by itself.
-fn usual_amplitude(doc: &Document) -> f64 {
+pub(super) fn usual_amplitude(doc: &Document) -> f64 {
     let amplitudes = doc.settings.materials.iter().map(|m| m.default_amplitude);
     let usual = amplitudes.fold(0.0, f64::max);
     if usual > 0.0 {

@@ -4,6 +4,7 @@
 mod compare;
 mod cost;
 mod display;
+mod extremes;
 mod lights;
 mod map_slot;
 mod materials;
@@ -24,6 +25,7 @@ use super::preferences::Preferences;
 use super::theme;
 
 pub(super) use display::MOST_STOPS;
+pub use extremes::Place;
 
 /// Width of the panel's content, points; less in windows that it would fill.
 const WIDTH: f32 = 316.0;
@@ -51,6 +53,8 @@ pub struct UiState {
     pub stats: crate::viewer::worker::FrameStats,
     /// What accuracy costs here.
     pub trade: crate::viewer::trade::TradeMeter,
+    /// Where the scene is being put.
+    pub place: Option<Place>,
     /// The pixel's story on show.
     pub story: Option<crate::viewer::story::Story>,
 }
@@ -62,6 +66,8 @@ pub enum Action {
     Run(Command),
     /// Open a file or a built-in scene.
     Open(PathBuf),
+    /// Put the built-in scene elsewhere.
+    Place(Place),
     /// Write a scene file.
     SaveScene(PathBuf),
     /// Write the picture.
@@ -169,7 +175,7 @@ fn is_on(panel: &PanelContext<'_>, command: Command) -> bool {
 
 fn sections_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
     type Section = (&'static str, bool, fn(&mut Ui, &mut PanelContext<'_>));
-    const SECTIONS: [Section; 10] = [
+    const SECTIONS: [Section; 11] = [
         ("Method", true, method::method_ui),
         ("Compare", false, compare::compare_ui),
         ("Trade", false, trade::trade_ui),
@@ -179,6 +185,7 @@ fn sections_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
         ("Shading", false, shading::shading_ui),
         ("Render", false, render::render_ui),
         ("Display", false, display::display_ui),
+        ("Extremes", false, extremes::extremes_ui),
         ("Cost", false, cost::cost_ui),
     ];
     for (title, open, section_ui) in SECTIONS {

@@ -16,9 +16,9 @@ use super::{
     FirstPass, Frame, FrameStats, PassRenderer, Refinement, RenderNote, RenderRequest,
     RendererFactory, Shared, lock,
 };
-use crate::render::{PassEnd, Snapshot, crashing_pixel};
-use crate::scene::SceneSource;
+use crate::render::{Legend, PassEnd, Snapshot, crashing_pixel};
 use crate::scene::save_picture::{SaveError, write_exr, write_png};
+use crate::scene::{DisplaySettings, SceneSource, View};
 
 /// A stride becomes finer only when the finer pass is expected to fit with this margin, so that the
 /// resolution does not flicker during a drag.
@@ -229,15 +229,14 @@ impl Coordinator {
 
     fn start(&mut self) -> io::Result<()> {
         let Some(job) = &self.job else { return Ok(()) };
-        let (threads, snapshot) = (job.request.threads, job.request.snapshot.clone());
-        let compare = job.request.compare;
+        let threads = job.request.threads;
         if self.renderer.as_ref().is_none_or(|r| r.threads != threads) {
             // The old pool goes first: two at once would fight for the cores.
             self.renderer = None;
             self.renderer = Some(Pair::new(threads, &mut self.factory)?);
         }
         match &mut self.renderer {
-            Some(renderer) => renderer.start(snapshot, compare, &mut self.factory),
+            Some(renderer) => renderer.start(&job.request, &mut self.factory),
             None => Ok(()),
         }
     }
@@ -320,7 +319,7 @@ impl Coordinator {
     /// Encodes the film, puts it into the outbox and wakes the window.
     fn publish(&mut self) {
         let converged = self.is_converged();
-        let Some((job, renderer)) = self.job.as_ref().zip(self.renderer.as_ref()) else {
+        let Some((job, renderer)) = self.job.as_ref().zip(self.renderer.as_mut()) else {
             return;
         };
         if !renderer.is_even() {
@@ -348,6 +347,7 @@ impl Coordinator {
             passes: self.passes,
             threads: renderer.first.threads(),
             error: None,
+            legend: None,
         };
         let size = shown.size.map(|n| n as usize);
         let buffer = || {
@@ -355,16 +355,10 @@ impl Coordinator {
             pixels.resize(size[0] * size[1], Color32::BLACK);
             pixels
         };
-        let (compare, exposure_ev) = (job.request.compare, job.request.exposure_ev);
-        let mut pixels = buffer();
-        let bytes = bytemuck::cast_slice_mut(&mut pixels);
-        renderer.first.encode_shown_into(exposure_ev, bytes);
-        let second = renderer.encode_second(compare, exposure_ev, &pixels, buffer);
-        let other = second.map(|(pixels, error)| {
-            stats.error = error;
-            ColorImage::new(size, pixels)
-        });
-        let image = ColorImage::new(size, pixels);
+        let pictures = renderer.encode(&job.request, buffer);
+        (stats.error, stats.legend) = (pictures.error, pictures.legend);
+        let other = pictures.other.map(|pixels| ColorImage::new(size, pixels));
+        let image = ColorImage::new(size, pictures.first);
         self.shown_at = Some(Instant::now());
         let is_awaited = {
             let mut outbox = lock(&self.shared.outbox);
@@ -394,7 +388,7 @@ impl Coordinator {
             renderer.first.samples(),
             job.request.snapshot.settings.samples,
         );
-        let note = match write_picture(path, &*renderer.first, job.request.exposure_ev) {
+        let note = match write_picture(path, &*renderer.first, job.request.display) {
             Ok(()) => RenderNote::Saved(format!(
                 "Saved {} ({samples} of {wanted} samples)",
                 path.display()
@@ -411,11 +405,11 @@ impl Coordinator {
     }
 }
 
-/// Writes what is shown, or linear values without exposure if the name ends in `.exr`.
+/// Writes what is shown, view and all, or linear values without exposure if the name ends in `.exr`.
 fn write_picture(
     path: &Path,
     renderer: &dyn PassRenderer,
-    exposure_ev: f32,
+    display: DisplaySettings,
 ) -> Result<(), SaveError> {
     let picture = renderer.picture();
     let size = [picture.width, picture.height];
@@ -425,7 +419,12 @@ fn write_picture(
         return write_exr(path, size, &linear);
     }
     let mut rgba = vec![[0; 4]; picture.pixels.len()];
-    renderer.encode_shown_into(exposure_ev, &mut rgba);
+    renderer.encode_shown_into(display.exposure_ev, &mut rgba);
+    if let Some(records) = renderer.records().filter(|_| display.view != View::Picture)
+        && let Some(legend) = Legend::of(display.view, &[&records])
+    {
+        legend.paint(&records, &mut rgba);
+    }
     let rgb: Vec<_> = rgba.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
     write_png(path, size, &rgb)
 }

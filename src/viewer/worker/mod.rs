@@ -22,7 +22,10 @@ use egui::{Color32, ColorImage};
 
 use crate::measure::error_map::{ErrorMetric, ErrorSummary};
 use crate::measure::stage_clock::StageClock;
-use crate::render::{Counters, PassEnd, Picture, Progressive, Shown, Snapshot};
+use crate::render::{
+    Counters, Legend, PassEnd, Picture, Progressive, Recording, Records, Shown, Snapshot,
+};
+use crate::scene::DisplaySettings;
 use crate::surface::mapping::Method;
 
 /// What the worker needs from a renderer. [`Progressive`] is the one that ships.
@@ -36,6 +39,12 @@ pub trait PassRenderer: Send {
     /// A pass, and the thread time in each stage of it, ms; what it does not measure is 0.
     fn timed_pass(&mut self, stop: &(dyn Fn() -> bool + Sync)) -> (PassEnd, [f64; 4]) {
         (self.pass(stop), [0.0; 4])
+    }
+    /// See [`Progressive::record`]. One that keeps no records does not listen.
+    fn record(&mut self, _what: Recording) {}
+    /// See [`Progressive::records`].
+    fn records(&self) -> Option<Records> {
+        None
     }
     /// See [`Progressive::samples`].
     fn samples(&self) -> u32;
@@ -72,6 +81,12 @@ impl PassRenderer for Progressive {
     fn timed_pass(&mut self, stop: &(dyn Fn() -> bool + Sync)) -> (PassEnd, [f64; 4]) {
         let (end, clocks) = self.watched_pass::<StageClock>(stop);
         (end, StageClock::sum_millis(&clocks))
+    }
+    fn record(&mut self, what: Recording) {
+        Self::record(self, what);
+    }
+    fn records(&self) -> Option<Records> {
+        Self::records(self)
     }
     fn samples(&self) -> u32 {
         Self::samples(self)
@@ -148,8 +163,8 @@ pub struct ErrorView {
 pub struct RenderRequest {
     /// What to render.
     pub snapshot: Snapshot,
-    /// Stops; a change of it alone encodes again without rendering.
-    pub exposure_ev: f32,
+    /// A change of it alone encodes again without rendering, unless a view begins that needs records.
+    pub display: DisplaySettings,
     /// Preview or not.
     pub first_pass: FirstPass,
     /// Refine or not.
@@ -165,14 +180,27 @@ impl RenderRequest {
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         self.same_samples(other)
-            && self.exposure_ev.to_bits() == other.exposure_ev.to_bits()
+            && self.display == other.display
             && self.first_pass == other.first_pass
             && self.refinement == other.refinement
             && self.compare == other.compare
     }
 
+    /// What first samples must leave.
+    #[must_use]
+    pub fn recording(&self) -> Recording {
+        let error = self.compare.and_then(|compare| compare.error);
+        match Recording::for_view(&self.display) {
+            Recording::Nothing if error.is_some_and(|e| e.metric.needs_records()) => {
+                Recording::Pixels
+            }
+            recording => recording,
+        }
+    }
+
     /// Whether the other one asks for no other samples, so that what is done can stay. A comparison that begins
-    /// needs both pictures from the start, so that they always have the same samples.
+    /// needs both pictures from the start, so that they always have the same samples; and records are made of
+    /// first samples only.
     fn same_samples(&self, other: &Self) -> bool {
         let (a, b) = (&self.snapshot, &other.snapshot);
         let method = |request: &Self| request.compare.map(|compare| compare.method);
@@ -181,6 +209,7 @@ impl RenderRequest {
             && a.size == b.size
             && self.threads == other.threads
             && (other.compare.is_none() || method(self) == method(other))
+            && self.recording().serves(other.recording())
     }
 }
 
@@ -218,6 +247,8 @@ pub struct FrameStats {
     pub threads: usize,
     /// How far the two pictures are apart, if that is shown.
     pub error: Option<ErrorSummary>,
+    /// What the colours mean where a view is shown instead of the picture, or over it.
+    pub legend: Option<Legend>,
 }
 
 /// A picture for the screen.

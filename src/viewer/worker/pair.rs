@@ -4,10 +4,13 @@ use std::io;
 
 use egui::Color32;
 
-use super::{Compare, PassRenderer, RendererFactory};
-use crate::measure::error_map::{ErrorSummary, error_map};
-use crate::render::{Counters, PassEnd, Snapshot};
-use crate::viewer::false_color::false_color;
+use super::{PassRenderer, RenderRequest, RendererFactory};
+use crate::math::false_color;
+use crate::measure::error_map::{self, ErrorSummary, error_map};
+use crate::render::{
+    Counters, Legend, MARK, NO_VALUE, PassEnd, Recording, Records, Shown, Snapshot,
+};
+use crate::scene::{DisplaySettings, View};
 
 /// The renderers of a job. The second exists only while two methods are compared.
 pub(super) struct Pair {
@@ -20,6 +23,26 @@ pub(super) struct Pair {
     spent: [f64; 4],
     /// The same of its last whole pass.
     pub stage_millis: [f64; 4],
+    /// Records of both that were asked for since they started.
+    records: [Option<Remembered>; 2],
+}
+
+/// Records of what a renderer showed.
+struct Remembered {
+    shown: Shown,
+    records: Records,
+}
+
+/// What is shown of both renderers.
+pub(super) struct Pictures {
+    /// Of the first.
+    pub first: Vec<Color32>,
+    /// Of the second, or the errors.
+    pub other: Option<Vec<Color32>>,
+    /// How far they are apart, if that is shown.
+    pub error: Option<ErrorSummary>,
+    /// What the colours of a view mean.
+    pub legend: Option<Legend>,
 }
 
 impl Pair {
@@ -30,17 +53,18 @@ impl Pair {
             second: None,
             spent: [0.0; 4],
             stage_millis: [0.0; 4],
+            records: [const { None }; 2],
         })
     }
 
     /// Starts both afresh: the second renders what the first does, but for the method.
     pub fn start(
         &mut self,
-        snapshot: Snapshot,
-        compare: Option<Compare>,
+        request: &RenderRequest,
         factory: &mut RendererFactory,
     ) -> io::Result<()> {
-        match compare {
+        let (snapshot, recording) = (&request.snapshot, request.recording());
+        match request.compare {
             None => self.drop_second(),
             Some(compare) => {
                 let mut settings = (*snapshot.settings).clone();
@@ -49,13 +73,16 @@ impl Pair {
                     Some(second) => second,
                     none => none.insert(factory(self.threads)?),
                 };
+                second.record(recording);
                 second.start(Snapshot {
                     settings: settings.into(),
                     ..snapshot.clone()
                 });
             }
         }
-        self.first.start(snapshot);
+        self.first.record(recording);
+        self.first.start(snapshot.clone());
+        self.records = [const { None }; 2];
         self.spent = [0.0; 4];
         Ok(())
     }
@@ -63,6 +90,7 @@ impl Pair {
     /// The comparison is over.
     pub fn drop_second(&mut self) {
         self.second = None;
+        self.records[1] = None;
     }
 
     /// A pass or preview of the first, then of the second. Where that was stopped between them, it goes on there.
@@ -120,28 +148,98 @@ impl Pair {
         second.is_none_or(|second| second.shown() == self.first.shown())
     }
 
-    /// Encodes the second beside the shown first, or their errors in false colours, into a buffer made by
-    /// `buffer`. Does nothing where nothing is compared.
-    pub fn encode_second(
-        &self,
-        compare: Option<Compare>,
-        exposure_ev: f32,
-        first: &[Color32],
-        buffer: impl FnOnce() -> Vec<Color32>,
-    ) -> Option<(Vec<Color32>, Option<ErrorSummary>)> {
-        let second = self.second.as_ref()?;
-        let error = compare?.error;
-        let mut pixels = buffer();
-        second.encode_shown_into(exposure_ev, bytemuck::cast_slice_mut(&mut pixels));
-        let summary = error.map(|error| {
-            let shown = second.shown();
-            let [a, b] = [first, &pixels].map(bytemuck::cast_slice::<Color32, [u8; 4]>);
-            let map = error_map(error.metric, a, b, shown.size[0] as usize, shown.stride);
-            for (pixel, value) in pixels.iter_mut().zip(&map) {
-                *pixel = false_color(value / error.full_scale);
+    /// Encodes what is shown of both, each into a buffer made by `buffer`.
+    pub fn encode(
+        &mut self,
+        request: &RenderRequest,
+        mut buffer: impl FnMut() -> Vec<Color32>,
+    ) -> Pictures {
+        let DisplaySettings {
+            exposure_ev, view, ..
+        } = request.display;
+        let is_recorded = request.recording() != Recording::Nothing;
+        if is_recorded {
+            let stays = |known: &Remembered, renderer: &dyn PassRenderer| {
+                // Of all that is in records only the number of samples changes from pass to pass.
+                known.shown == renderer.shown() && view != View::Samples
+            };
+            let renderers = [Some(&self.first), self.second.as_ref()];
+            for (known, renderer) in self.records.iter_mut().zip(renderers) {
+                let renderer = renderer.map(|renderer| &**renderer);
+                if known
+                    .as_ref()
+                    .zip(renderer)
+                    .is_some_and(|(k, r)| stays(k, r))
+                {
+                    continue;
+                }
+                *known = renderer.and_then(|renderer| {
+                    let (shown, records) = (renderer.shown(), renderer.records()?);
+                    Some(Remembered { shown, records })
+                });
+            }
+        }
+        let mut encoded = |renderer: &dyn PassRenderer| {
+            let mut pixels = buffer();
+            renderer.encode_shown_into(exposure_ev, bytemuck::cast_slice_mut(&mut pixels));
+            pixels
+        };
+        let mut first = encoded(&*self.first);
+        let second = self.second.as_ref().filter(|_| request.compare.is_some());
+        let mut other = second.map(|second| encoded(&**second));
+        let records = self.records.each_ref().map(|known| {
+            let known = known.as_ref().filter(|_| is_recorded);
+            known.map(|known| &known.records)
+        });
+        let error = request.compare.and_then(|compare| compare.error);
+        let error = error.zip(other.as_mut()).map(|(error, other)| {
+            let Shown { size, stride } = self.first.shown();
+            let shown = |pixels, records| error_map::Shown { pixels, records };
+            let [a, b] = [&first, &*other].map(|p| bytemuck::cast_slice::<Color32, [u8; 4]>(p));
+            let pair = [shown(a, records[0]), shown(b, records[1])];
+            let map = error_map(error.metric, pair, size[0] as usize, stride);
+            for (pixel, &value) in other.iter_mut().zip(&map) {
+                *pixel = error_color(value, error.full_scale);
             }
             ErrorSummary::of(error.metric, &map)
         });
-        Some((pixels, summary))
+        // Errors stand where the second picture would.
+        let views = [
+            records[0].map(|records| (records, &mut first)),
+            records[1].zip(other.as_mut().filter(|_| error.is_none())),
+        ];
+        let known: Vec<_> = views
+            .iter()
+            .flatten()
+            .map(|(records, _)| *records)
+            .collect();
+        let legend = if known.is_empty() {
+            None
+        } else {
+            Legend::of(view, &known)
+        };
+        for (records, pixels) in views.into_iter().flatten() {
+            if let Some(legend) = &legend {
+                legend.paint(records, bytemuck::cast_slice_mut(pixels));
+            }
+        }
+        Pictures {
+            first,
+            other,
+            error,
+            legend,
+        }
     }
+}
+
+/// The false colour of an error; loud where only one picture shows a surface, grey where there is nothing to say.
+fn error_color(value: f32, full_scale: f32) -> Color32 {
+    let [r, g, b] = if value.is_nan() {
+        NO_VALUE
+    } else if value.is_infinite() {
+        MARK
+    } else {
+        false_color(value / full_scale)
+    };
+    Color32::from_rgb(r, g, b)
 }

@@ -8,7 +8,7 @@ use reliefscope::viewer::comparison::Layout;
 
 use super::driver::{Driver, WINDOW};
 
-/// The reference plane without a map beside its exact relief.
+/// The reference plane without a map beside its true relief.
 fn comparing() -> Driver {
     let mut driver = Driver::reference();
     driver.key(Key::Num1);
@@ -20,7 +20,7 @@ fn comparing() -> Driver {
 
 /// What a screen reader says of the shown pictures.
 fn names(driver: &Driver) -> [bool; 2] {
-    ["A · None", "B · Exact relief"].map(|name| driver.has(name))
+    ["A · None", "B · Displacement, the truth"].map(|name| driver.has(name))
 }
 
 #[test]
@@ -28,7 +28,7 @@ fn a_key_begins_and_ends_it() {
     let mut driver = Driver::reference();
     assert!(driver.app().other_image().is_none() && !driver.has("Wipe line"));
     driver = comparing();
-    assert_eq!(driver.doc().comparison.method, Method::Exact);
+    assert_eq!(driver.doc().comparison.method, Method::Displacement);
     assert_eq!(names(&driver), [true; 2]);
     let (a, b) = (driver.app().image(), driver.app().other_image());
     let (a, b) = (a.expect("A"), b.expect("B"));
@@ -143,4 +143,38 @@ fn both_pictures_follow_the_camera() {
         driver.node(Role::Splitter, "Wipe line").rect().center().x,
         WINDOW.x * 0.5
     );
+}
+
+#[test]
+fn errors_of_normals_places_and_depths() {
+    let mut driver = comparing();
+    driver.section("Compare");
+    let metrics = [
+        (ErrorMetric::NormalAngle, "Colours from 0 to 45°"),
+        (ErrorMetric::Uv, "Colours from 0 to 8 texels"),
+        (ErrorMetric::Depth, "Colours from 0 to 0.25"),
+    ];
+    for (metric, bar) in metrics {
+        driver.choose("Shown of B", metric.label());
+        driver.wait_until(|app| app.stats().error.is_some_and(|e| e.metric == metric));
+        driver.settle();
+        assert!(driver.has(&format!("Error: {}", metric.label())) && driver.has(bar));
+        let error = driver.app().stats().error.expect("an error");
+        assert!(error.mean > 0.01 && error.p95 >= error.mean, "{error:?}");
+        let numbers = format!(
+            "mean {:.4} p95 {:.4}{}",
+            error.mean,
+            error.p95,
+            metric.unit()
+        );
+        assert!(driver.has(&numbers), "{numbers}");
+    }
+    // The exact walk over this flat chart is as good as the truth.
+    driver.choose("Shown of B", ErrorMetric::Uv.label());
+    driver.key(Key::Equals);
+    driver.settle();
+    let walked = driver.app().stats().error.expect("an error");
+    assert!(walked.mean < 0.05, "{walked:?}");
+    driver.number("Full scale", 500.0);
+    assert_eq!(driver.doc().comparison.full_scale, 500.0);
 }

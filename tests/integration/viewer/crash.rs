@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use reliefscope::render::{Progressive, Snapshot, crashing_pixel, probe};
+use reliefscope::scene::DisplaySettings;
 use reliefscope::viewer::worker::{
     FirstPass, PassRenderer, Refinement, RenderNote, RenderRequest, RenderWorker,
 };
@@ -27,7 +28,7 @@ fn request(snapshot: &Snapshot) -> RenderRequest {
     RenderRequest {
         snapshot: snapshot.clone(),
         threads: 1,
-        exposure_ev: 0.0,
+        display: DisplaySettings::default(),
         first_pass: FirstPass::FullResolution,
         refinement: Refinement::Paused,
         compare: None,

@@ -83,7 +83,7 @@ fn shown(threads: usize) -> Vec<[u8; 3]> {
         };
         generation = worker.submit(RenderRequest {
             snapshot,
-            exposure_ev: loaded.display.exposure_ev,
+            display: loaded.display,
             first_pass: FirstPass::Adaptive,
             refinement: Refinement::Running,
             threads,

@@ -13,6 +13,7 @@ use reliefscope::viewer::worker::{
 };
 
 use reliefscope::measure::error_map::ErrorMetric;
+use reliefscope::scene::DisplaySettings;
 use reliefscope::surface::mapping::Method;
 
 use crate::support::{QuadScene, edited};
@@ -201,7 +202,7 @@ impl Bench {
 fn request(snapshot: &Snapshot, samples: u32) -> RenderRequest {
     RenderRequest {
         snapshot: edited(snapshot, |settings| settings.samples = samples),
-        exposure_ev: 0.0,
+        display: DisplaySettings::default(),
         first_pass: FirstPass::FullResolution,
         refinement: Refinement::Running,
         threads: 1,
@@ -325,7 +326,10 @@ fn exposure_encodes_again_without_rendering() {
     bench.frame_where(|frame| frame.stats.converged);
     let before = bench.events();
     let bright = RenderRequest {
-        exposure_ev: 4.0,
+        display: DisplaySettings {
+            exposure_ev: 4.0,
+            ..DisplaySettings::default()
+        },
         ..dark
     };
     bench.worker.submit(bright);
@@ -408,7 +412,10 @@ fn a_comparison_goes_on_where_it_was_stopped() {
     // Both have a sample, the first has two, and now the second's is stopped by a change that keeps the samples.
     bench.wait_for_pass();
     bench.worker.submit(RenderRequest {
-        exposure_ev: 4.0,
+        display: DisplaySettings {
+            exposure_ev: 4.0,
+            ..DisplaySettings::default()
+        },
         ..dark
     });
     bench.release();
@@ -429,7 +436,7 @@ fn errors_are_measured_without_rendering_again() {
     bench.frame_where(|frame| frame.stats.converged);
     let before = bench.events();
     let mut errors = plain;
-    for metric in ErrorMetric::ALL {
+    let mut show = |bench: &mut Bench, metric| {
         errors.compare = errors.compare.map(|compare| Compare {
             error: Some(ErrorView {
                 metric,
@@ -438,10 +445,23 @@ fn errors_are_measured_without_rendering_again() {
             ..compare
         });
         let generation = bench.worker.submit(errors.clone());
-        let frame = bench.frame_where(|frame| frame.stats.generation == generation);
+        let frame = bench
+            .frame_where(|frame| frame.stats.generation == generation && frame.stats.converged);
         let error = frame.stats.error.expect("an error");
         // The fakes render the same.
         assert_eq!((error.metric, error.mean, error.p95), (metric, 0.0, 0.0));
+    };
+    for metric in [ErrorMetric::Luma, ErrorMetric::Flip] {
+        show(&mut bench, metric);
     }
     assert_eq!(bench.events(), before);
+    // Records are made of first samples only: both start once more, and that is enough for all that need them.
+    for metric in [
+        ErrorMetric::NormalAngle,
+        ErrorMetric::Uv,
+        ErrorMetric::Depth,
+    ] {
+        show(&mut bench, metric);
+    }
+    assert_eq!(bench.events(), [before.clone(), before].concat());
 }

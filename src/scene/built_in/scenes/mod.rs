@@ -2,6 +2,7 @@
 
 mod board;
 mod courtyard;
+mod extremes;
 mod mirrors;
 mod solids;
 mod stage;
@@ -10,6 +11,7 @@ mod wall;
 
 pub use board::materials;
 pub use courtyard::columns;
+pub use extremes::extremes;
 pub use mirrors::mirrors;
 pub use solids::{sphere, torus};
 pub use stage::Stage;

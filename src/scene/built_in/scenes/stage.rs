@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::super::meshes::WorldMesh;
-use super::super::{BuiltInInfo, Palette, assemble};
+use super::super::{BuiltInInfo, Palette, Placement, assemble};
 use crate::math::LinearRgb;
 use crate::scene::load::LoadOptions;
 use crate::scene::{
@@ -33,8 +33,14 @@ pub struct Stage {
 
 impl Stage {
     /// The scene with its starting settings.
-    pub fn finish(self, info: &BuiltInInfo, options: &LoadOptions) -> LoadedScene {
-        let source = SceneSource::BuiltIn(info.name.to_owned());
+    pub fn finish(
+        mut self,
+        info: &BuiltInInfo,
+        placement: Placement,
+        options: &LoadOptions,
+    ) -> LoadedScene {
+        placement.apply(&mut self);
+        let source = SceneSource::BuiltIn(placement.name(info.name));
         let scene = assemble(info.label, source, &self.mesh, self.palette.images, options);
         LoadedScene {
             scene: Arc::new(scene),
@@ -51,6 +57,7 @@ impl Stage {
             },
             display: DisplaySettings {
                 exposure_ev: self.exposure_ev,
+                ..DisplaySettings::default()
             },
             size: None,
             warnings: Vec::new(),

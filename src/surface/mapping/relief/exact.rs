@@ -73,6 +73,15 @@ pub fn sinking_ray(field: &ReliefField<'_>, uv: [f32; 2], per_z: [f32; 2]) -> Re
     ReliefRay::by_height(start, per_z, high, z_end)
 }
 
+/// Steps at which the walk along a point's view ray is given up.
+#[must_use]
+pub fn most_steps(field: &ReliefField<'_>, s: &SurfaceInteraction) -> f32 {
+    let (per_z, _) = view_ray(field, s);
+    let ray = sinking_ray(field, [s.uv.x, s.uv.y], [per_z.x, per_z.y]);
+    // The step that goes beyond the cap is counted, too.
+    (field.step_cap(&ray) as f32) + 1.0
+}
+
 /// u, v and z of the place where the walk of a [`sinking_ray`] ended, and its steps.
 #[inline]
 #[must_use]

@@ -18,7 +18,8 @@ use crate::math::V2;
 
 pub use cones::cone_steps;
 pub use exact::{
-    LIFT, exact, found, is_shadowed, landed, light_ray, rising_ray, sinking_ray, view_ray,
+    LIFT, exact, found, is_shadowed, landed, light_ray, most_steps, rising_ray, sinking_ray,
+    view_ray,
 };
 pub use march::{Layers, Refinement, iterate, march};
 pub use walk::{ReliefField, ReliefRay, Side, Walk};

@@ -256,6 +256,12 @@ impl<'a> ReliefField<'a> {
         }
     }
 
+    /// Steps after which the walk of a ray is given up.
+    #[must_use]
+    pub fn step_cap(&self, ray: &ReliefRay) -> u32 {
+        step_cap(self.size, ray)
+    }
+
     /// [`Self::walk`] for many rays, with the instructions of `level`: the same bits.
     ///
     /// # Panics
@@ -484,10 +490,7 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
 
     /// Twice what the finest possible walk could take, ups and downs included.
     pub(super) fn step_cap(&self, ray: &ReliefRay) -> u32 {
-        let [w, h] = self.size.map(f64::from);
-        let tiles = 2.0 + (ray.rate[0] * ray.end / w).abs() + (ray.rate[1] * ray.end / h).abs();
-        let cap = 64.0 + 4.0 * (w + h) * tiles;
-        cap.min(STEP_CAP) as u32
+        step_cap(self.size, ray)
     }
 }
 
@@ -500,6 +503,14 @@ fn wrapped(cell: i64, n: u32) -> u32 {
     } else {
         cell.rem_euclid(n) as u32
     }
+}
+
+/// Steps after which a walk over a map of that size is given up.
+fn step_cap(size: [u32; 2], ray: &ReliefRay) -> u32 {
+    let [w, h] = size.map(f64::from);
+    let tiles = 2.0 + (ray.rate[0] * ray.end / w).abs() + (ray.rate[1] * ray.end / h).abs();
+    let cap = 64.0 + 4.0 * (w + h) * tiles;
+    cap.min(STEP_CAP) as u32
 }
 
 /// The smaller of two numbers that are not NaN, in one instruction.

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::geometry::triangle::{TriangleHit, TriangleTest};
+use super::{TriangleHit, TriangleTest};
 use crate::geometry::{Ray, RaySlabs};
 
 /// Woop's test without the second look in `f64` where an edge function is 0, and with `t` and the weights

@@ -6,9 +6,7 @@
 
 use std::sync::LazyLock;
 
-use egui::Color32;
-
-use crate::math::{LinearRgb, srgb8_from_linear};
+use super::{LinearRgb, srgb8_from_linear};
 
 /// Oklab lightness of 0 and of 1.
 const LIGHTNESS: [f32; 2] = [0.14, 0.95];
@@ -17,10 +15,10 @@ const HUE: [f32; 2] = [305.0, 100.0];
 /// Most chroma.
 const CHROMA: f32 = 0.16;
 
-/// The colour of a number in `[0, 1]`; values outside are clamped, NaN counts as 1, so that it is seen.
+/// The sRGB colour of a number in `[0, 1]`; values outside are clamped, NaN counts as 1, so that it is seen.
 #[must_use]
-pub fn false_color(value: f32) -> Color32 {
-    static TABLE: LazyLock<Vec<Color32>> = LazyLock::new(|| {
+pub fn false_color(value: f32) -> [u8; 3] {
+    static TABLE: LazyLock<Vec<[u8; 3]>> = LazyLock::new(|| {
         (0..256_u16)
             .map(|i| on_path(f32::from(i) / 255.0))
             .collect()
@@ -30,7 +28,7 @@ pub fn false_color(value: f32) -> Color32 {
     TABLE[(value * 255.0 + 0.5) as usize]
 }
 
-fn on_path(t: f32) -> Color32 {
+fn on_path(t: f32) -> [u8; 3] {
     let along = |[from, to]: [f32; 2]| from + (to - from) * t;
     let (lightness, hue) = (along(LIGHTNESS), along(HUE).to_radians());
     let chromas = (0..=32).rev().map(|i| CHROMA * i as f32 / 32.0);
@@ -39,8 +37,7 @@ fn on_path(t: f32) -> Color32 {
     let color = colors
         .find(shown)
         .unwrap_or(LinearRgb::gray(lightness.powi(3)));
-    let [r, g, b] = srgb8_from_linear(color);
-    Color32::from_rgb(r, g, b)
+    srgb8_from_linear(color)
 }
 
 fn from_oklab(lightness: f32, a: f32, b: f32) -> LinearRgb {
@@ -62,8 +59,8 @@ mod tests {
     #[test]
     fn larger_is_lighter() {
         let luminance = |i: usize| {
-            let c = false_color(i as f32 / 64.0);
-            let [r, g, b] = [c.r(), c.g(), c.b()].map(|x| linear_from_srgb(f32::from(x) / 255.0));
+            let color = false_color(i as f32 / 64.0);
+            let [r, g, b] = color.map(|x| linear_from_srgb(f32::from(x) / 255.0));
             0.2126 * r + 0.7152 * g + 0.0722 * b
         };
         for i in 0..64 {

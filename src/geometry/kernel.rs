@@ -1,13 +1,12 @@
-//! Which ray–triangle test and which offset is looked at.
+//! Which ray–triangle test and which offset is looked at, where the program's own are compared with textbooks'.
 
 use glam::Vec3;
 
-use super::PlainWoop;
-use crate::geometry::bvh::{AcceptAll, Bvh};
-use crate::geometry::triangle::{
-    MollerTrumbore, ReportEdges, TriangleHit, TriangleTest, Watertight,
+use super::bvh::{Bvh, HitFilter};
+use super::triangle::{
+    MollerTrumbore, PlainWoop, ReportEdges, TriangleHit, TriangleTest, Watertight,
 };
-use crate::geometry::{Hit, OriginRule, Ray, RaySlabs};
+use super::{Hit, OriginRule, Ray, RaySlabs};
 
 /// A ray–triangle test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -49,26 +48,26 @@ impl Kernel {
         Self::ALL.into_iter().find(|kernel| kernel.name() == name)
     }
 
-    /// The closest hit ahead, through the tree.
+    /// The closest hit ahead that counts, through the tree.
     #[must_use]
-    pub fn closest(self, bvh: &Bvh, ray: &Ray) -> Option<Hit> {
+    pub fn closest(self, bvh: &Bvh, ray: &Ray, filter: &impl HitFilter) -> Option<Hit> {
         let far = f32::INFINITY;
         match self {
-            Self::Watertight => bvh.intersect::<Watertight, _>(ray, far, &AcceptAll),
-            Self::Report => bvh.intersect::<ReportEdges, _>(ray, far, &AcceptAll),
-            Self::MollerTrumbore => bvh.intersect::<MollerTrumbore, _>(ray, far, &AcceptAll),
-            Self::Woop => bvh.intersect::<PlainWoop, _>(ray, far, &AcceptAll),
+            Self::Watertight => bvh.intersect::<Watertight, _>(ray, far, filter),
+            Self::Report => bvh.intersect::<ReportEdges, _>(ray, far, filter),
+            Self::MollerTrumbore => bvh.intersect::<MollerTrumbore, _>(ray, far, filter),
+            Self::Woop => bvh.intersect::<PlainWoop, _>(ray, far, filter),
         }
     }
 
-    /// Whether anything is hit nearer than `t_max`, through the tree.
+    /// Whether anything that counts is hit nearer than `t_max`, through the tree.
     #[must_use]
-    pub fn occluded(self, bvh: &Bvh, ray: &Ray, t_max: f32) -> bool {
+    pub fn occluded(self, bvh: &Bvh, ray: &Ray, t_max: f32, filter: &impl HitFilter) -> bool {
         match self {
-            Self::Watertight => bvh.occluded::<Watertight, _>(ray, t_max, &AcceptAll),
-            Self::Report => bvh.occluded::<ReportEdges, _>(ray, t_max, &AcceptAll),
-            Self::MollerTrumbore => bvh.occluded::<MollerTrumbore, _>(ray, t_max, &AcceptAll),
-            Self::Woop => bvh.occluded::<PlainWoop, _>(ray, t_max, &AcceptAll),
+            Self::Watertight => bvh.occluded::<Watertight, _>(ray, t_max, filter),
+            Self::Report => bvh.occluded::<ReportEdges, _>(ray, t_max, filter),
+            Self::MollerTrumbore => bvh.occluded::<MollerTrumbore, _>(ray, t_max, filter),
+            Self::Woop => bvh.occluded::<PlainWoop, _>(ray, t_max, filter),
         }
     }
 
