@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::Snapshot;
 use super::material::FrameMaterial;
 use crate::geometry::bvh::Bvh;
-use crate::geometry::{TriangleAttributes, TriangleMesh};
+use crate::geometry::{TangentCell, TriangleAttributes, TriangleMesh};
 use crate::math::simd::SimdLevel;
 use crate::math::{LinearRgb, Real, V3};
 use crate::scene::{Background, BentNormals, Scene, ShadingModel};
@@ -55,6 +55,8 @@ pub struct FrameLight {
 pub struct Frame<'a> {
     /// Triangles.
     pub mesh: &'a TriangleMesh,
+    /// Their tangents; made already if a material needs them.
+    pub tangents: &'a TangentCell,
     /// Tree over them.
     pub bvh: &'a Bvh,
     /// Vector instructions of the stages: those of the tree.
@@ -97,8 +99,12 @@ impl<'a> Frame<'a> {
             .iter()
             .map(|m| FrameMaterial::new(m, scene, &settings.mapping))
             .collect();
+        if materials.iter().any(|m| m.mapping.needs_baked_frame()) {
+            scene.tangents.get(&scene.mesh);
+        }
         Self {
             mesh: &scene.mesh,
+            tangents: &scene.tangents,
             bvh: &scene.bvh,
             level: scene.bvh.level(),
             camera: FrameCamera::new(snapshot),

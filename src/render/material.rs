@@ -2,15 +2,16 @@
 
 use glam::Vec2;
 
+use crate::geometry::{Hit, TangentCell, TriangleMesh};
 use crate::math::{LinearRgb, Real, V2};
 use crate::scene::Scene;
 use crate::shading::Material;
-use crate::surface::SurfaceParts;
 use crate::surface::mapping::relief::ReliefField;
 use crate::surface::mapping::{
     BoundHeight, BoundNormal, MappingSettings, MaterialMapping, MaterialMaps, Method,
 };
-use crate::texture::{Addressing, ColorMap, HeightMap, MapRole, MapSlot};
+use crate::surface::{BakedFrame, SurfaceInteraction, SurfaceParts};
+use crate::texture::{Addressing, ColorMap, HeightMap, MapRole, MapSlot, NormalSpace};
 
 /// An albedo map tied to its material.
 #[derive(Debug, Clone, Copy)]
@@ -110,12 +111,12 @@ impl<'a> FrameMaterial<'a> {
                 .map(|s| bind_normal(s, scene, material, mapping)),
             pyramid: slot(MapRole::Height)
                 .filter(|_| mapping.needs_pyramid() && internal_amplitude != 0.0)
-                .map(|s| scene.images[s.image].pyramid(s.channel, s.wrap)),
+                .map(|s| scene.images[s.image].heights_of(s).pyramid(s.wrap)),
             cones: slot(MapRole::Height)
                 .filter(|_| mapping.needs_cones() && internal_amplitude != 0.0)
                 .map(|s| {
                     let inverted = internal_amplitude * s.gain_and_bias().0 < 0.0;
-                    scene.images[s.image].cones(s.channel, s.wrap, inverted)
+                    scene.images[s.image].heights_of(s).cones(s.wrap, inverted)
                 }),
         };
         Self {
@@ -133,6 +134,20 @@ impl<'a> FrameMaterial<'a> {
             opacity: slot(MapRole::Opacity).map(|s| bind_opacity(s, scene)),
             mapping: MaterialMapping::choose(mapping, &maps),
             relief: displaced(mapping, &maps),
+        }
+    }
+
+    /// Gives a point the frame of its baked normal map, if the material has one.
+    pub fn place_baked_frame(
+        &self,
+        (mesh, tangents): (&TriangleMesh, &TangentCell),
+        hit: &Hit,
+        s: &mut SurfaceInteraction,
+    ) {
+        if self.mapping.needs_baked_frame() && mesh.attributes[hit.prim as usize].has_uv {
+            let smooth = mesh.attributes[hit.prim as usize].smooth;
+            let frame = BakedFrame::fetch((mesh, tangents.get(mesh)), hit.prim, smooth);
+            frame.place((hit.u, hit.v), s);
         }
     }
 
@@ -173,12 +188,13 @@ fn bind_height<'a>(
 ) -> BoundHeight<'a> {
     // Displacement A·(h − midlevel).
     let (gain, bias) = slot.gain_and_bias();
+    let heights = scene.images[slot.image].heights_of(slot);
     BoundHeight {
-        map: scene.images[slot.image].height(slot.channel),
+        map: heights.map(),
         addressing: Addressing::from_slot(slot),
         scale: amplitude * gain,
         offset: amplitude * (bias - midlevel),
-        stored: scene.images[slot.image].height_extremes(slot.channel),
+        stored: heights.extremes(),
     }
 }
 
@@ -197,15 +213,23 @@ fn bind_normal<'a>(
     };
     let green = if slot.flip_green { -1.0 } else { 1.0 };
     // A picture laid upside down or mirrored on the chart turns its slopes round with it.
-    let signs = Vec2::new(
-        1.0_f32.copysign(addressing.scale.x),
-        -green * 1.0_f32.copysign(addressing.scale.y),
-    );
+    let space = match slot.role {
+        MapRole::Normal => slot.space,
+        _ => NormalSpace::Tangent,
+    };
+    let signs = match space {
+        NormalSpace::Object => Vec2::new(1.0, green),
+        NormalSpace::Tangent | NormalSpace::MikkTSpace => Vec2::new(
+            1.0_f32.copysign(addressing.scale.x),
+            -green * 1.0_f32.copysign(addressing.scale.y),
+        ),
+    };
     BoundNormal {
         map: scene.images[slot.image].normal(),
         addressing,
         strength,
         signs,
+        space,
     }
 }
 

@@ -295,6 +295,7 @@ fn hit_story(snapshot: &Snapshot, frame: &Frame<'_>, ray: &Ray, found: &Nearest)
     if found.displaced.is_some() {
         mapped.n_shade = plain.n_geo;
     }
+    material.place_baked_frame((frame.mesh, frame.tangents), hit, &mut mapped);
     let diffuse = surface::perturb(material, parts, &mut mapped, true);
     let has_uv = parts > SurfaceParts::Plain;
     let front = plain.wo.dot(plain.n_geo) >= 0.0;

@@ -135,12 +135,14 @@ pub fn profile(snapshot: &Snapshot, pixel: [u32; 2]) -> Result<ReliefProfile, No
     }
     let cut = Cut::new(&frame, field, &ray, &hit)?;
     let mut truth = cut.surface;
+    material.place_baked_frame((frame.mesh, frame.tangents), &hit, &mut truth);
     material.mapping.apply(&mut truth, true);
     let run = |method: Method, edit: &dyn Fn(&mut MappingSettings)| {
         let mut mapping = with_method(&snapshot.settings.mapping, method);
         edit(&mut mapping);
         let material = FrameMaterial::new(&exact.settings.materials[index], &exact.scene, &mapping);
         let mut s = cut.surface;
+        material.place_baked_frame((frame.mesh, frame.tangents), &hit, &mut s);
         material.mapping.apply(&mut s, true);
         s
     };

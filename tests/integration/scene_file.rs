@@ -15,7 +15,7 @@ use reliefscope::scene::{
 };
 use reliefscope::shading::{Falloff, Light, LightKind, Material};
 use reliefscope::surface::mapping::{Derivative, Lookup, Method, SearchSettings};
-use reliefscope::texture::{Channel, MapRole, MapSlot, Wrap};
+use reliefscope::texture::{Channel, MapRole, MapSlot, NormalSpace, Wrap};
 use tempfile::TempDir;
 
 const MODEL: &str = "mtllib plane.mtl
@@ -191,6 +191,8 @@ impl Random {
             channel: self.of(&Channel::ALL),
             invert: self.flag(),
             flip_green: self.flag(),
+            space: self.of(&NormalSpace::ALL),
+            destair: self.flag(),
             flip_v: self.flag(),
             wrap: self.of(&Wrap::ALL),
             uv_scale: [self.number(), self.number()],
@@ -444,6 +446,8 @@ fn full_text(folder: &Folder) -> String {
         channel: Channel::Alpha,
         invert: true,
         flip_green: true,
+        space: NormalSpace::Object,
+        destair: true,
         flip_v: true,
         wrap: Wrap::Mirror,
         uv_scale: [2.0, 3.0],

@@ -12,7 +12,7 @@ use crate::math::simd::{Kernel, Simd, SimdBase as _, SimdLevel, SimdMask as _};
 use crate::math::wide::{Wide, WideBits, WideMask};
 use crate::math::{Bits as _, LinearRgb, Mask as _, Real as _, V2, V3};
 use crate::surface::mapping::relief::{ReliefField, found, landed, sinking_ray, view_ray};
-use crate::surface::{Facet, FacetKind, SurfaceInteraction, SurfaceParts, surface_on};
+use crate::surface::{BakedFrame, Facet, FacetKind, SurfaceInteraction, SurfaceParts, surface_on};
 
 /// Makes the surfaces that the rays hit, perturbed by their materials' maps and turned towards the eye.
 pub fn mapped_surfaces(
@@ -199,13 +199,18 @@ impl Kernel for MapRun<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let material = &self.frame.materials[self.run.material];
-        let searches =
-            self.run.kind.parts == SurfaceParts::Gradients && material.mapping.searches();
+        let perturbed = self.run.kind.parts == SurfaceParts::Gradients;
+        let searches = perturbed && material.mapping.searches();
         let walked = material.mapping.walks().is_some() && searches;
         let mut facets = Facets::new(self.frame, self.run.kind);
         for group in self.run.places.groups::<S>() {
             let mask = self.run.places.mask(simd, group);
             let mut s = facets.surface(simd, (&self.run, group), self.rays, self.hits);
+            if perturbed && material.mapping.needs_baked_frame() {
+                let frame = self.baked_frame(simd, group);
+                let barycentrics = (self.hits.u.get(simd, group), self.hits.v.get(simd, group));
+                frame.place(barycentrics, &mut s);
+            }
             if walked {
                 let from = &self.surfaces.relief;
                 let [u, v] = &from.uv;
@@ -218,7 +223,7 @@ impl Kernel for MapRun<'_> {
                 let usable = from.usable.mask(simd, group);
                 let found = found(&s, [u, v, z, from.steps.get(simd, group)], usable);
                 material.mapping.apply_found(&mut s, &found);
-            } else if self.run.kind.parts == SurfaceParts::Gradients {
+            } else if perturbed {
                 material.mapping.apply(&mut s, mask);
             }
             if let Some(points) = self
@@ -257,6 +262,21 @@ impl Kernel for MapRun<'_> {
                 set3(&mut to.grad_v, group, mask, s.grad_v);
             }
         }
+    }
+}
+
+impl MapRun<'_> {
+    /// The frames of baked normal maps on the triangles of a group.
+    #[inline(always)]
+    fn baked_frame<S: Simd>(&self, simd: S, group: usize) -> BakedFrame<Wide<S>> {
+        let Self { frame, run, .. } = self;
+        let prims = self.hits.prim.get(simd, group);
+        let lane = run.places.bits::<S>(group).trailing_zeros() as usize;
+        let one = prims.splat(prims.0.as_slice()[lane]);
+        // Lanes outside the mask hold no triangle: they take part with any.
+        let prims = WideBits::select(run.places.mask(simd, group), prims, one);
+        let from = (frame.mesh, frame.tangents.get(frame.mesh));
+        BakedFrame::fetch(from, prims, run.kind.smooth)
     }
 }
 

@@ -6,7 +6,7 @@ use crate::math::LinearRgb;
 use crate::scene::{Background, BentNormals, ShadingModel};
 use crate::shading::Light;
 use crate::surface::mapping::{Derivative, Lookup, Method};
-use crate::texture::{Channel, MapRole, Wrap};
+use crate::texture::{Channel, MapRole, NormalSpace, Wrap};
 
 /// A value and the byte offset of its key, for faults that show only once the model is known.
 #[derive(Debug, Clone, PartialEq)]
@@ -153,6 +153,10 @@ pub(super) struct MaterialKeys {
     pub simple_maps: Vec<(MapRole, Placed<String>)>,
     /// `normal_y`: whether green grows downwards.
     pub normal_down: Option<Placed<bool>>,
+    /// `normal_space`.
+    pub normal_space: Option<Placed<NormalSpace>>,
+    /// `destair`.
+    pub destair: Option<Placed<bool>>,
     /// `normal_amplitude`, world units.
     pub normal_amplitude: Option<Placed<OrDefault<f64>>>,
 }
@@ -172,6 +176,10 @@ pub(super) struct MapKeys {
     pub invert: Option<bool>,
     /// `flip_green`.
     pub flip_green: Option<bool>,
+    /// `space`.
+    pub space: Option<NormalSpace>,
+    /// `destair`.
+    pub destair: Option<bool>,
     /// `flip_v`.
     pub flip_v: Option<bool>,
     /// `wrap`.

@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 use crate::math::{Real, V2, V3};
-use crate::texture::{Addressing, HeightMap, NormalMap, Wrap};
+use crate::texture::{Addressing, HeightMap, NormalMap, NormalSpace, Wrap};
 
 /// A height map with its amplitude: `displacement = stored · scale + offset`, internal units along the
 /// normal.
@@ -97,6 +97,22 @@ pub struct BoundNormal<'a> {
     pub strength: f32,
     /// Signs that turn stored x and y towards +u and +v: flipped green, flipped v and negative scales.
     pub signs: Vec2,
+    /// The directions that the map is told in.
+    pub space: NormalSpace,
+}
+
+impl<'a> BoundNormal<'a> {
+    /// A tangent-space map as it is.
+    #[must_use]
+    pub const fn new(map: &'a NormalMap, addressing: Addressing) -> Self {
+        Self {
+            map,
+            addressing,
+            strength: 1.0,
+            signs: Vec2::ONE,
+            space: NormalSpace::Tangent,
+        }
+    }
 }
 
 impl BoundNormal<'_> {
@@ -112,6 +128,16 @@ impl BoundNormal<'_> {
         } else {
             V3::new(x, y, m.z)
         }
+    }
+
+    /// Stored vector at `uv` in the axes of the model's file. Turned-over and mirrored copies of a picture
+    /// say the same there.
+    #[inline(always)]
+    #[must_use]
+    pub fn stored_in_object<F: Real>(&self, uv: V2<F>) -> V3<F> {
+        let st = self.addressing.st(uv);
+        let m = self.map.sample(st, self.addressing.wrap);
+        V3::new(m.x * self.signs.x, m.y * self.signs.y, m.z)
     }
 }
 

@@ -38,6 +38,7 @@ pub(super) fn cost_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
     let displaced = scene.displaced.last();
     let bytes = [
         ("Mesh", scene.mesh.bytes()),
+        ("Tangents", scene.tangents.bytes()),
         ("Tree", scene.bvh.bytes()),
         (
             "Pictures and maps",
