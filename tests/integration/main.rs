@@ -4,6 +4,7 @@
 
 mod answers;
 mod bench;
+mod bent_normals;
 mod built_in;
 mod bundles;
 mod bvh;
