@@ -18,14 +18,13 @@ pub struct Heights {
 impl Heights {
     /// Nothing but the map.
     #[must_use]
-    pub const fn new(map: HeightMap) -> Self {
-        const NO_CONES: [OnceLock<ConeMap>; 2] = [const { OnceLock::new() }; 2];
+    pub fn new(map: HeightMap) -> Self {
         Self {
             map,
             extremes: OnceLock::new(),
             levels: OnceLock::new(),
-            pyramids: [const { OnceLock::new() }; Wrap::ALL.len()],
-            cones: [NO_CONES; Wrap::ALL.len()],
+            pyramids: Default::default(),
+            cones: Default::default(),
         }
     }
 

@@ -79,7 +79,7 @@ fn errors_against_the_relief_before_rounding_fall() {
         assert!((levels.step - 1.0 / 255.0).abs() < 1e-6, "{levels:?}");
         let smooth = destaired(&map, levels.step, Wrap::Repeat);
         let (before, after) = (errors(&map), errors(&smooth));
-        println!(
+        eprintln!(
             "{file_bits} bits: heights {:.2e} → {:.2e}, slopes {:.2e} → {:.2e}",
             before[0], after[0], before[1], after[1]
         );

@@ -193,20 +193,20 @@ fn errors(image: &RawImage, space: NormalSpace) -> [f64; 2] {
 fn a_baked_map_gives_the_detailed_normals_back() {
     let mesh = coarse_ball();
     let [mean, most] = errors(&bake(&mesh, false), NormalSpace::MikkTSpace);
-    println!("floats: mean {mean:.5}°, most {most:.5}°");
+    eprintln!("floats: mean {mean:.5}°, most {most:.5}°");
     assert!(most < 0.01, "floats: {most}°");
     // Rounding to bytes: half of 2/255 on each axis is 0.39° at the worst, a little more where the
     // interpolated frame is shorter than a unit.
     let bytes = bake(&mesh, true);
     let [mean, most] = errors(&bytes, NormalSpace::MikkTSpace);
-    println!("bytes: mean {mean:.3}°, most {most:.3}°");
+    eprintln!("bytes: mean {mean:.3}°, most {most:.3}°");
     assert!(
         mean < 0.2 && most < 0.5,
         "bytes: mean {mean}°, most {most}°"
     );
     // The frame of each triangle by itself is another one: that is what the space is for.
     let [mean, most] = errors(&bytes, NormalSpace::Tangent);
-    println!("bytes in the triangles' own frames: mean {mean:.3}°, most {most:.3}°");
+    eprintln!("bytes in the triangles' own frames: mean {mean:.3}°, most {most:.3}°");
     assert!(mean > 0.5 && most > 2.0, "mean {mean}°, most {most}°");
 }
 

@@ -43,7 +43,7 @@ fn the_stored_vector_is_the_normal_on_any_chart() {
     for (i, chart) in charts.into_iter().enumerate() {
         let mut scene = quad_with(N);
         scene.uv = chart;
-        println!("chart {i}");
+        eprintln!("chart {i}");
         shows(&scene.snapshot(), N);
     }
 }
