@@ -76,6 +76,7 @@ fn flat_point() -> SurfaceInteraction {
         dp_du: Vec3::X.into(),
         handedness: 1.0,
         n_smooth: Vec3::Z.into(),
+        footprint: 0.0,
         sunk: 0.0,
         steps: 0.0,
     }

@@ -23,6 +23,7 @@ pub use camera::{Camera, CameraAxes};
 pub use open::{built_in_names, open};
 pub use settings::{
     Background, BentNormals, DisplaySettings, RenderSettings, ShadingModel, ShadingSettings,
+    TextureFilter,
 };
 pub use warning::{LoadError, LoadWarning};
 

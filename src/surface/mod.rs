@@ -9,5 +9,5 @@ pub mod mapping;
 
 pub use baked_frame::BakedFrame;
 pub use facet::{Facet, FacetKind};
-pub use hit_point::{SurfaceParts, surface_at, surface_on, uv_at};
+pub use hit_point::{SurfaceParts, footprint, surface_at, surface_on, uv_at};
 pub use interaction::SurfaceInteraction;

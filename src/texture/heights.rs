@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::{ConeMap, HeightMap, HeightPyramid, Levels, Wrap};
+use super::{ConeMap, HeightMap, HeightPyramid, Levels, SlopeMoments, Wrap};
 
 /// A height map with everything that methods derive from it. Each part is made when it is first asked for,
 /// then kept.
@@ -11,6 +11,8 @@ pub struct Heights {
     map: HeightMap,
     extremes: OnceLock<[f32; 2]>,
     levels: OnceLock<Levels>,
+    halvings: OnceLock<Vec<HeightMap>>,
+    moments: [OnceLock<Vec<SlopeMoments>>; Wrap::ALL.len()],
     pyramids: [OnceLock<HeightPyramid>; Wrap::ALL.len()],
     cones: [[OnceLock<ConeMap>; 2]; Wrap::ALL.len()],
 }
@@ -23,6 +25,8 @@ impl Heights {
             map,
             extremes: OnceLock::new(),
             levels: OnceLock::new(),
+            halvings: OnceLock::new(),
+            moments: Default::default(),
             pyramids: Default::default(),
             cones: Default::default(),
         }
@@ -44,6 +48,27 @@ impl Heights {
     #[must_use]
     pub fn levels(&self) -> Levels {
         *self.levels.get_or_init(|| Levels::of(&self.map))
+    }
+
+    /// The map halved again and again.
+    #[must_use]
+    pub fn halvings(&self) -> &[HeightMap] {
+        self.halvings.get_or_init(|| self.map.halvings())
+    }
+
+    /// Moments of the slopes from half the size on, for a slot that goes on by `wrap`.
+    #[must_use]
+    pub fn moments(&self, wrap: Wrap) -> &[SlopeMoments] {
+        self.moments[wrap as usize].get_or_init(|| SlopeMoments::of_heights(&self.map, wrap))
+    }
+
+    /// Heap bytes of halvings and moments, if they were made.
+    #[must_use]
+    pub fn filter_bytes(&self) -> usize {
+        let halved = self.halvings.get().into_iter().flatten();
+        let moments = self.moments.iter().filter_map(OnceLock::get).flatten();
+        halved.map(HeightMap::bytes).sum::<usize>()
+            + moments.map(SlopeMoments::bytes).sum::<usize>()
     }
 
     /// The extremes of the heights over squares of all sizes, for a slot that goes on by `wrap`.

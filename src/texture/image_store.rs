@@ -3,7 +3,10 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use super::{Channel, ColorMap, HeightMap, Heights, MapSlot, NormalMap, RawImage, Wrap, destaired};
+use super::{
+    Channel, ColorMap, HeightMap, Heights, MapRole, MapSlot, NormalMap, RawImage, SlopeMoments,
+    Wrap, destaired,
+};
 
 /// One picture of a scene. Typed maps are made when a material first asks for the role, then kept: a
 /// scene that never uses a picture as normals never pays for it. What is made never changes a pixel.
@@ -21,6 +24,17 @@ pub struct MapImage {
     destaired: Box<[[OnceLock<Box<Heights>>; Wrap::ALL.len()]; Channel::ALL.len()]>,
     normals: OnceLock<NormalMap>,
     colors: OnceLock<ColorMap>,
+    /// Halvings, boxed because few pictures have any.
+    filtered: Box<Filtered>,
+}
+
+/// Colours, normals and slopes, halved again and again.
+#[derive(Debug, Clone, Default)]
+struct Filtered {
+    colors: OnceLock<Vec<ColorMap>>,
+    normals: OnceLock<Vec<NormalMap>>,
+    slopes: OnceLock<Vec<NormalMap>>,
+    moments: OnceLock<Vec<SlopeMoments>>,
 }
 
 impl MapImage {
@@ -35,6 +49,7 @@ impl MapImage {
             destaired: Box::default(),
             normals: OnceLock::new(),
             colors: OnceLock::new(),
+            filtered: Box::default(),
         }
     }
 
@@ -88,6 +103,57 @@ impl MapImage {
         self.colors.get_or_init(|| ColorMap::from_image(&self.raw))
     }
 
+    /// The normals (or slopes, by the role) halved again and again.
+    #[must_use]
+    pub fn normal_halvings(&self, role: MapRole) -> &[NormalMap] {
+        let made = match role {
+            MapRole::Slope => &self.filtered.slopes,
+            _ => &self.filtered.normals,
+        };
+        made.get_or_init(|| self.normal().halvings(role))
+    }
+
+    /// Moments of the picture's slopes from half the size on.
+    #[must_use]
+    pub fn slope_moments(&self) -> &[SlopeMoments] {
+        self.filtered
+            .moments
+            .get_or_init(|| SlopeMoments::of_slopes(self.normal()))
+    }
+
+    /// The surface colours halved again and again.
+    #[must_use]
+    pub fn color_halvings(&self) -> &[ColorMap] {
+        self.filtered.colors.get_or_init(|| self.color().halvings())
+    }
+
+    /// Heap bytes of all halvings made so far.
+    #[must_use]
+    pub fn filter_bytes(&self) -> usize {
+        let Filtered {
+            colors,
+            normals,
+            slopes,
+            moments,
+        } = &*self.filtered;
+        let vectors = [normals, slopes].into_iter().filter_map(OnceLock::get);
+        let heights: usize = self.made_heights().map(Heights::filter_bytes).sum();
+        heights
+            + moments
+                .get()
+                .into_iter()
+                .flatten()
+                .map(SlopeMoments::bytes)
+                .sum::<usize>()
+            + vectors.flatten().map(NormalMap::bytes).sum::<usize>()
+            + colors
+                .get()
+                .into_iter()
+                .flatten()
+                .map(ColorMap::bytes)
+                .sum::<usize>()
+    }
+
     /// Heap bytes of the samples and of every map made so far.
     #[must_use]
     pub fn bytes(&self) -> usize {
@@ -99,6 +165,7 @@ impl MapImage {
         let heights: usize = self.made_heights().map(|h| h.map().bytes()).sum();
         raw + heights
             + self.search_bytes()
+            + self.filter_bytes()
             + self.normals.get().map_or(0, NormalMap::bytes)
             + self.colors.get().map_or(0, ColorMap::bytes)
     }

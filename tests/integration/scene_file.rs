@@ -11,7 +11,8 @@ use reliefscope::scene::file::{SaveError, SceneView, apply_overrides, read_scene
 use reliefscope::scene::load::LoadOptions;
 use reliefscope::scene::save_picture::write_png;
 use reliefscope::scene::{
-    Background, BentNormals, Camera, LoadError, LoadedScene, SceneSource, ShadingModel, open,
+    Background, BentNormals, Camera, LoadError, LoadedScene, SceneSource, ShadingModel,
+    TextureFilter, open,
 };
 use reliefscope::shading::{Falloff, Light, LightKind, Material};
 use reliefscope::surface::mapping::{Derivative, Lookup, Method, SearchSettings};
@@ -239,6 +240,8 @@ impl Random {
         }
         settings.shading.model = self.of(&ShadingModel::ALL);
         settings.shading.bent_normals = self.of(&BentNormals::ALL);
+        settings.shading.filter = self.of(&TextureFilter::ALL);
+        settings.shading.specular_antialiasing = self.flag();
         settings.shading.shadows = self.flag();
         settings.shading.max_bounces = self.below(65);
         let top = self.color();

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::math::LinearRgb;
-use crate::scene::{Background, BentNormals, ShadingModel};
+use crate::scene::{Background, BentNormals, ShadingModel, TextureFilter};
 use crate::shading::Light;
 use crate::surface::mapping::{Derivative, Lookup, Method};
 use crate::texture::{Channel, MapRole, NormalSpace, Wrap};
@@ -76,6 +76,10 @@ pub(super) struct ShadingKeys {
     pub model: Option<ShadingModel>,
     /// `bent_normals`.
     pub bent_normals: Option<BentNormals>,
+    /// `filter`.
+    pub filter: Option<TextureFilter>,
+    /// `specular_antialiasing`.
+    pub specular_antialiasing: Option<bool>,
     /// `shadows`.
     pub shadows: Option<bool>,
     /// `max_bounces`.

@@ -9,7 +9,7 @@ use super::fault::{Fault, Read};
 use super::parse_light::lights;
 use super::parse_material::materials;
 use super::section::{Item, Limits, Section};
-use crate::scene::{Background, BentNormals, ShadingModel};
+use crate::scene::{Background, BentNormals, ShadingModel, TextureFilter};
 use crate::surface::mapping::{Derivative, Lookup, Method, SearchSettings};
 
 /// Most columns or rows of a picture.
@@ -153,6 +153,10 @@ fn shading(root: &mut Section<'_>) -> Read<ShadingKeys> {
         bent_normals: table.read("bent_normals", |x| {
             x.choice(&BentNormals::ALL, BentNormals::name)
         })?,
+        filter: table.read("filter", |x| {
+            x.choice(&TextureFilter::ALL, TextureFilter::name)
+        })?,
+        specular_antialiasing: table.read("specular_antialiasing", Item::boolean)?,
         shadows: table.read("shadows", Item::boolean)?,
         max_bounces: table.read("max_bounces", |x| x.integer(0, MAX_BOUNCES))?,
         background: table.read("background", background)?,

@@ -176,6 +176,14 @@ impl<'a> MaterialMapping<'a> {
         self.tilt.apply(s);
     }
 
+    /// How much the slopes of the relief differ over the footprint of a point that maps were applied to: the
+    /// variance, the mean of both axes. 0 for maps that are read at points.
+    #[inline(always)]
+    #[must_use]
+    pub fn slope_variance<F: Real>(&self, s: &SurfaceInteraction<F>) -> F {
+        self.tilt.slope_variance(s)
+    }
+
     /// [`Self::apply`] where the search is over already.
     #[inline(always)]
     pub fn apply_found<F: Real>(&self, s: &mut SurfaceInteraction<F>, found: &Found<F>) {
@@ -261,7 +269,7 @@ fn move_to<F: Real>(s: &mut SurfaceInteraction<F>, found: &Found<F>) {
 pub fn parallax<F: Real>(height: &BoundHeight<'_>, s: &SurfaceInteraction<F>) -> V2<F> {
     let cos = s.wo.dot(s.n_shade);
     let above = cos.gt(cos.splat(MIN_PARALLAX_COS));
-    moved(s, above, height.displacement(s.uv) / cos)
+    moved(s, above, height.displacement_over(s.uv, s.footprint) / cos)
 }
 
 /// Parallax with offset limiting (report 2.18, Welsh 2004): without the division the shift is at most
@@ -272,7 +280,11 @@ pub fn parallax<F: Real>(height: &BoundHeight<'_>, s: &SurfaceInteraction<F>) ->
 #[must_use]
 pub fn parallax_limited<F: Real>(height: &BoundHeight<'_>, s: &SurfaceInteraction<F>) -> V2<F> {
     let cos = s.wo.dot(s.n_shade);
-    moved(s, cos.gt(cos.splat(0.0)), height.displacement(s.uv))
+    moved(
+        s,
+        cos.gt(cos.splat(0.0)),
+        height.displacement_over(s.uv, s.footprint),
+    )
 }
 
 #[inline(always)]

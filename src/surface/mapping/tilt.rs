@@ -44,12 +44,28 @@ impl<'a> Tilt<'a> {
         }
     }
 
+    /// Variance of the slopes over the footprint of a point, the mean of both axes; 0 where nothing was made to
+    /// tell it.
+    #[inline(always)]
+    pub(super) fn slope_variance<F: Real>(&self, s: &SurfaceInteraction<F>) -> F {
+        match self {
+            Self::Keep => s.footprint.splat(0.0),
+            Self::Analytic(h) | Self::Central(h) => {
+                h.slope_variance(s.uv, s.footprint, [s.grad_u, s.grad_v])
+            }
+            Self::Normal(n) | Self::Baked(n) | Self::Object(n) => {
+                n.normal_variance(s.uv, s.footprint)
+            }
+            Self::Slope(n) => n.slope_variance(s.uv, s.footprint),
+        }
+    }
+
     #[inline(always)]
     pub(super) fn apply<F: Real>(&self, s: &mut SurfaceInteraction<F>) {
         match self {
             Self::Keep => {}
-            Self::Analytic(h) => s.n_shade = bumped(s, h.analytic_slope(s.uv)),
-            Self::Central(h) => s.n_shade = bumped(s, h.central_slope(s.uv)),
+            Self::Analytic(h) => s.n_shade = bumped(s, h.analytic_slope(s.uv, s.footprint)),
+            Self::Central(h) => s.n_shade = bumped(s, h.central_slope(s.uv, s.footprint)),
             Self::Normal(n) => s.n_shade = normal_mapped(n, s),
             Self::Baked(n) => s.n_shade = baked_normal_mapped(n, s),
             Self::Object(n) => s.n_shade = object_normal_mapped(n, s),
@@ -74,7 +90,7 @@ pub fn bumped<F: Real>(s: &SurfaceInteraction<F>, slope: V2<F>) -> V3<F> {
 #[inline(always)]
 #[must_use]
 pub fn normal_mapped<F: Real>(map: &BoundNormal<'_>, s: &SurfaceInteraction<F>) -> V3<F> {
-    tilted(s, map.stored(s.uv), map.strength)
+    tilted(s, map.stored(s.uv, s.footprint), map.strength)
 }
 
 /// The same in the frame that MikkTSpace makes, which [`BakedFrame`](crate::surface::BakedFrame) has put in
@@ -85,7 +101,7 @@ pub fn normal_mapped<F: Real>(map: &BoundNormal<'_>, s: &SurfaceInteraction<F>) 
 #[inline(always)]
 #[must_use]
 pub fn baked_normal_mapped<F: Real>(map: &BoundNormal<'_>, s: &SurfaceInteraction<F>) -> V3<F> {
-    let (n, m) = (s.n_shade, map.stored(s.uv));
+    let (n, m) = (s.n_shade, map.stored(s.uv, s.footprint));
     let zero = m.x.splat(0.0);
     let bitangent = n.cross(s.dp_du) * s.handedness;
     let tilted = n * m.z + (s.dp_du * m.x + bitangent * m.y) * zero.splat(map.strength);
@@ -99,7 +115,7 @@ pub fn baked_normal_mapped<F: Real>(map: &BoundNormal<'_>, s: &SurfaceInteractio
 #[inline(always)]
 #[must_use]
 pub fn object_normal_mapped<F: Real>(map: &BoundNormal<'_>, s: &SurfaceInteraction<F>) -> V3<F> {
-    let (n, m) = (s.n_shade, map.stored_in_object(s.uv));
+    let (n, m) = (s.n_shade, map.stored_in_object(s.uv, s.footprint));
     let across = m - n * n.dot(m);
     (m + across * m.x.splat(map.strength - 1.0)).normalize_or(n)
 }
@@ -108,7 +124,7 @@ pub fn object_normal_mapped<F: Real>(map: &BoundNormal<'_>, s: &SurfaceInteracti
 #[inline(always)]
 #[must_use]
 pub fn slope_mapped<F: Real>(map: &BoundNormal<'_>, s: &SurfaceInteraction<F>) -> V3<F> {
-    let stored = map.stored(s.uv);
+    let stored = map.stored(s.uv, s.footprint);
     let up = stored.z.splat(1.0);
     tilted(s, V3::new(-stored.x, -stored.y, up), map.strength)
 }

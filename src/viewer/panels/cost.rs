@@ -45,12 +45,16 @@ pub(super) fn cost_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
             scene
                 .images
                 .iter()
-                .map(|i| i.bytes() - i.search_bytes())
+                .map(|i| i.bytes() - i.search_bytes() - i.filter_bytes())
                 .sum(),
         ),
         (
             "Pyramids and cones",
             scene.images.iter().map(|i| i.search_bytes()).sum(),
+        ),
+        (
+            "Mip maps",
+            scene.images.iter().map(|i| i.filter_bytes()).sum(),
         ),
         ("Displacement", displaced.map_or(0, |d| d.bytes())),
     ];

@@ -2,7 +2,7 @@
 
 use egui::accesskit::Role;
 use glam::DVec3;
-use reliefscope::scene::ShadingModel;
+use reliefscope::scene::{ShadingModel, TextureFilter};
 use reliefscope::shading::{Falloff, LightKind};
 use reliefscope::surface::mapping::{Derivative, Lookup, Method};
 use reliefscope::texture::{Channel, MapRole, NormalSpace, Wrap};
@@ -209,6 +209,10 @@ fn few_levels_are_told() {
 fn the_shading_section() {
     let mut driver = with_section("Shading");
     driver.choose("Shading model", "report");
+    driver.choose("Texture filter", "mip");
+    assert_eq!(driver.settings().shading.filter, TextureFilter::Mip);
+    driver.check("Specular antialiasing");
+    assert!(driver.settings().shading.specular_antialiasing);
     driver.check("Shadows");
     driver.number("Mirror bounces", 5.0);
     let shading = driver.settings().shading;
