@@ -194,12 +194,7 @@ fn mapping(bencher: Bencher, method: &str) {
         offset: Vec2::new(0.0, 1.0),
         wrap: Wrap::Repeat,
     };
-    let normal = Some(BoundNormal {
-        map: &normals,
-        addressing,
-        strength: 1.0,
-        signs: Vec2::ONE,
-    });
+    let normal = Some(BoundNormal::new(&normals, addressing));
     let maps = MaterialMaps {
         height: Some(BoundHeight::new(&heights, addressing, 0.02, -0.02)),
         normal,

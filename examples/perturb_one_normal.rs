@@ -28,12 +28,7 @@ fn main() {
     let slopes = stored(Vec3::new(AMPLITUDE, 0.0, 1.0));
 
     let addressing = |role| Addressing::from_slot(&MapSlot::new(0, role));
-    let bound_normal = |map, role| BoundNormal {
-        map,
-        addressing: addressing(role),
-        strength: 1.0,
-        signs: Vec2::ONE,
-    };
+    let bound_normal = |map, role| BoundNormal::new(map, addressing(role));
     let pyramid = HeightPyramid::new(&heights, Wrap::Repeat);
     let cones = ConeMap::new(&heights, Wrap::Repeat, false);
     let maps = MaterialMaps {
@@ -81,6 +76,7 @@ fn flat_point() -> SurfaceInteraction {
         dp_du: Vec3::X.into(),
         handedness: 1.0,
         n_smooth: Vec3::Z.into(),
+        footprint: 0.0,
         sunk: 0.0,
         steps: 0.0,
     }

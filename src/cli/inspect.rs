@@ -10,7 +10,7 @@ use super::options::InspectOptions;
 use super::output;
 use crate::scene::{LoadedScene, Scene};
 use crate::shading::Material;
-use crate::texture::{MapImage, MapSlot};
+use crate::texture::{Levels, MapImage, MapRole, MapSlot, NormalSpace};
 
 /// Runs the command.
 pub(super) fn run(options: &InspectOptions) -> Result<(), CliError> {
@@ -68,6 +68,9 @@ fn map_json(scene: &Scene, slot: &MapSlot) -> Value {
         "channel": slot.channel,
         "invert": slot.invert,
         "flip_green": slot.flip_green,
+        "space": slot.space,
+        "destair": slot.destair,
+        "levels": levels(scene, slot).map(|levels| levels.count),
         "flip_v": slot.flip_v,
         "wrap": slot.wrap,
         "uv_scale": slot.uv_scale,
@@ -92,6 +95,12 @@ fn image_json(image: &MapImage) -> Value {
 
 fn image_name<'a>(scene: &'a Scene, slot: &MapSlot) -> &'a str {
     scene.images.get(slot.image).map_or("", |image| &image.name)
+}
+
+/// The heights that a height map tells apart.
+fn levels(scene: &Scene, slot: &MapSlot) -> Option<Levels> {
+    let image = scene.images.get(slot.image)?;
+    (slot.role == MapRole::Height).then(|| image.heights(slot.channel).levels())
 }
 
 fn as_text(loaded: &LoadedScene) -> String {
@@ -173,6 +182,16 @@ fn write_material(text: &mut String, scene: &Scene, material: &Material) -> std:
         if let Some(image) = scene.images.get(slot.image) {
             let raw = &image.raw;
             write!(text, ", {}x{}, {} bits", raw.width, raw.height, raw.bits())?;
+        }
+        if let Some(levels) = levels(scene, slot) {
+            let more = if levels.is_many() { "more than " } else { "" };
+            write!(text, ", {more}{} levels", levels.count.min(Levels::MOST))?;
+        }
+        if slot.destair {
+            write!(text, ", de-staired")?;
+        }
+        if slot.space != NormalSpace::Tangent {
+            write!(text, ", {} space", slot.space.name())?;
         }
         if let Some(baked) = slot.baked_amplitude {
             write!(text, ", baked for amplitude {}", short(baked))?;

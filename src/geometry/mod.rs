@@ -12,6 +12,7 @@ mod mesh;
 mod normalization;
 mod ray;
 mod slabs;
+mod tangents;
 pub mod triangle;
 
 /// The vector instructions that trees are traced with.
@@ -26,3 +27,4 @@ pub use ray::{
     offset_origin,
 };
 pub use slabs::RaySlabs;
+pub use tangents::{Tangent, TangentCell, Tangents};

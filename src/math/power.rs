@@ -1,5 +1,7 @@
 //! Powers of numbers just below 1, as sharp highlights need them.
 
+use std::ops::Mul;
+
 use super::real::{Bits as _, Real};
 
 /// Bits of `√½`.
@@ -20,7 +22,7 @@ const LEAST: f32 = -87.0;
 /// natural logarithm of the result; `0⁰` is 1.
 #[inline(always)]
 #[must_use]
-pub fn power_below_one<F: Real>(miss: F, exponent: f32) -> F {
+pub fn power_below_one<F: Real + Mul<E, Output = F>, E>(miss: F, exponent: E) -> F {
     exp(ln_one_minus(miss) * exponent)
 }
 

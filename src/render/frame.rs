@@ -7,10 +7,10 @@ use glam::Vec3;
 use super::Snapshot;
 use super::material::FrameMaterial;
 use crate::geometry::bvh::Bvh;
-use crate::geometry::{TriangleAttributes, TriangleMesh};
+use crate::geometry::{TangentCell, TriangleAttributes, TriangleMesh};
 use crate::math::simd::SimdLevel;
 use crate::math::{LinearRgb, Real, V3};
-use crate::scene::{Background, BentNormals, Scene, ShadingModel};
+use crate::scene::{Background, BentNormals, Scene, ShadingModel, TextureFilter};
 use crate::shading::{Falloff, LightKind};
 use crate::surface::displaced::{DisplacedMesh, Displacement, Reliefs};
 use crate::surface::mapping::MappingSettings;
@@ -56,6 +56,8 @@ pub struct FrameLight {
 pub struct Frame<'a> {
     /// Triangles.
     pub mesh: &'a TriangleMesh,
+    /// Their tangents; made already if a material needs them.
+    pub tangents: &'a TangentCell,
     /// Tree over them.
     pub bvh: &'a Bvh,
     /// Vector instructions of the stages: those of the tree.
@@ -76,6 +78,8 @@ pub struct Frame<'a> {
     pub model: ShadingModel,
     /// Normals bent by maps.
     pub bent_normals: BentNormals,
+    /// Growth of a ray's cone per distance, where maps are read as means over it.
+    pub cone_spread: Option<f32>,
     /// Whether shadow rays are traced.
     pub shadows: bool,
     /// Mirror bounces at the most.
@@ -96,10 +100,14 @@ impl<'a> Frame<'a> {
         let materials: Vec<_> = settings
             .materials
             .iter()
-            .map(|m| FrameMaterial::new(m, scene, &settings.mapping))
+            .map(|m| FrameMaterial::new(m, scene, &settings.mapping, &settings.shading))
             .collect();
+        if materials.iter().any(|m| m.mapping.needs_baked_frame()) {
+            scene.tangents.get(&scene.mesh);
+        }
         Self {
             mesh: &scene.mesh,
+            tangents: &scene.tangents,
             bvh: &scene.bvh,
             level: scene.bvh.level(),
             camera: FrameCamera::new(snapshot),
@@ -110,6 +118,8 @@ impl<'a> Frame<'a> {
             materials,
             model: settings.shading.model,
             bent_normals: settings.shading.bent_normals,
+            cone_spread: (settings.shading.filter == TextureFilter::Mip)
+                .then(|| pixel_spread(snapshot)),
             shadows: settings.shading.shadows,
             max_bounces: settings.shading.max_bounces,
             background: settings.shading.background,
@@ -195,6 +205,12 @@ impl<'a> FrameDisplacement<'a> {
             displacement: &self.displacement,
         }
     }
+}
+
+/// Width of a pixel at distance 1.
+fn pixel_spread(snapshot: &Snapshot) -> f32 {
+    let height = f64::from(snapshot.size[1]);
+    (2.0 * (snapshot.settings.camera.vfov * 0.5).tan() / height) as f32
 }
 
 impl FrameCamera {

@@ -2,15 +2,18 @@
 
 use glam::Vec2;
 
+use crate::geometry::{Hit, TangentCell, TriangleMesh};
 use crate::math::{LinearRgb, Real, V2};
-use crate::scene::Scene;
+use crate::scene::{Scene, ShadingSettings, TextureFilter};
 use crate::shading::Material;
-use crate::surface::SurfaceParts;
 use crate::surface::mapping::relief::ReliefField;
 use crate::surface::mapping::{
     BoundHeight, BoundNormal, MappingSettings, MaterialMapping, MaterialMaps,
 };
-use crate::texture::{Addressing, ColorMap, HeightMap, MapRole, MapSlot};
+use crate::surface::{BakedFrame, SurfaceInteraction, SurfaceParts};
+use crate::texture::{
+    Addressing, ColorMap, HeightMap, Look, MapRole, MapSlot, Mips, NormalSpace, Wrap,
+};
 
 /// An albedo map tied to its material.
 #[derive(Debug, Clone, Copy)]
@@ -19,15 +22,16 @@ pub struct BoundColor<'a> {
     addressing: Addressing,
     gain: f32,
     bias: f32,
+    mips: Option<Mips<'a, ColorMap>>,
 }
 
 impl BoundColor<'_> {
-    /// Linear colour at `uv`.
+    /// Linear colour at `uv`, the mean over the footprint of a point.
     #[inline(always)]
     #[must_use]
-    pub fn color<F: Real>(&self, uv: V2<F>) -> LinearRgb<F> {
-        let st = self.addressing.st(uv);
-        let LinearRgb { r, g, b } = self.map.sample(st, self.addressing.wrap);
+    pub fn color<F: Real>(&self, uv: V2<F>, footprint: F) -> LinearRgb<F> {
+        let look = ColorAt(self.addressing.st(uv), self.addressing.wrap);
+        let [r, g, b] = Mips::look(self.map, self.mips.as_ref(), footprint, &look);
         if self.gain == 1.0 && self.bias == 0.0 {
             return LinearRgb { r, g, b };
         }
@@ -36,6 +40,18 @@ impl BoundColor<'_> {
             g: g * self.gain + self.bias,
             b: b * self.gain + self.bias,
         }
+    }
+}
+
+/// Colours at a place.
+struct ColorAt<F: Real>(V2<F>, Wrap);
+
+impl<F: Real> Look<F, 3> for ColorAt<F> {
+    type Map = ColorMap;
+    #[inline(always)]
+    fn at(&self, map: &ColorMap) -> [F; 3] {
+        let LinearRgb { r, g, b } = map.sample(self.0, self.1);
+        [r, g, b]
     }
 }
 
@@ -69,6 +85,8 @@ pub struct FrameMaterial<'a> {
     pub ks: LinearRgb,
     /// Whether a highlight is computed at all.
     pub is_glossy: bool,
+    /// Whether the highlight widens where slopes differ.
+    pub widens_highlights: bool,
     /// Phong exponent.
     pub shininess: f32,
     /// Mirror share.
@@ -81,12 +99,23 @@ pub struct FrameMaterial<'a> {
     pub mapping: MaterialMapping<'a>,
     /// The relief that is geometry of its own.
     pub relief: Option<ReliefField<'a>>,
+    /// How maps are read.
+    pub filter: TextureFilter,
 }
 
 impl<'a> FrameMaterial<'a> {
     /// Resolves one material.
     #[must_use]
-    pub fn new(material: &Material, scene: &'a Scene, mapping: &MappingSettings) -> Self {
+    pub fn new(
+        material: &Material,
+        scene: &'a Scene,
+        mapping: &MappingSettings,
+        shading: &ShadingSettings,
+    ) -> Self {
+        let filter = shading.filter;
+        let is_glossy = material.ks.max_channel() > 0.0;
+        let widens_highlights =
+            is_glossy && filter == TextureFilter::Mip && shading.specular_antialiasing;
         let internal_amplitude = scene
             .normalization
             .internal_length(amplitude(material, mapping));
@@ -99,40 +128,61 @@ impl<'a> FrameMaterial<'a> {
         // Only what the method can use is bound, so that a typed map nobody reads is never made.
         let reads = mapping.method.reads(mapping.lookup);
         let maps = MaterialMaps {
-            height: slot(MapRole::Height)
-                .filter(|_| reads.height)
-                .map(|s| bind_height(s, scene, internal_amplitude, midlevel)),
+            height: slot(MapRole::Height).filter(|_| reads.height).map(|s| {
+                let mut height = bind_height(s, scene, (internal_amplitude, midlevel), filter);
+                height.moments = widens_highlights.then(|| Mips {
+                    halved: scene.images[s.image].heights_of(s).moments(s.wrap),
+                    rate: height.addressing.texels_per_uv(height.map.size()),
+                });
+                height
+            }),
             normal: slot(MapRole::Normal)
                 .filter(|_| reads.normal)
-                .map(|s| bind_normal(s, scene, material, mapping)),
-            slope: slot(MapRole::Slope)
-                .filter(|_| reads.slope)
-                .map(|s| bind_normal(s, scene, material, mapping)),
+                .map(|s| bind_normal(s, scene, amplitude(material, mapping), filter)),
+            slope: slot(MapRole::Slope).filter(|_| reads.slope).map(|s| {
+                let mut slope = bind_normal(s, scene, amplitude(material, mapping), filter);
+                slope.moments = widens_highlights.then(|| Mips {
+                    halved: scene.images[s.image].slope_moments(),
+                    rate: slope.addressing.texels_per_uv(slope.map.size()),
+                });
+                slope
+            }),
             pyramid: slot(MapRole::Height)
                 .filter(|_| mapping.needs_pyramid() && internal_amplitude != 0.0)
-                .map(|s| scene.images[s.image].pyramid(s.channel, s.wrap)),
+                .map(|s| scene.images[s.image].heights_of(s).pyramid(s.wrap)),
             cones: slot(MapRole::Height)
                 .filter(|_| mapping.needs_cones() && internal_amplitude != 0.0)
                 .map(|s| {
                     let inverted = internal_amplitude * s.gain_and_bias().0 < 0.0;
-                    scene.images[s.image].cones(s.channel, s.wrap, inverted)
+                    scene.images[s.image].heights_of(s).cones(s.wrap, inverted)
                 }),
         };
         Self {
             kd: material.kd,
             ks: material.ks,
-            is_glossy: material.ks.max_channel() > 0.0,
+            is_glossy,
+            widens_highlights,
             shininess: material.shininess.max(0.0),
             reflectivity: material.reflectivity.clamp(0.0, 1.0),
-            albedo: slot(MapRole::Albedo).map(|s| BoundColor {
-                map: scene.images[s.image].color(),
-                addressing: Addressing::from_slot(s),
-                gain: s.gain,
-                bias: s.bias,
-            }),
+            albedo: slot(MapRole::Albedo).map(|s| bind_color(s, scene, filter)),
             opacity: slot(MapRole::Opacity).map(|s| bind_opacity(s, scene)),
             mapping: MaterialMapping::choose(mapping, &maps),
             relief: displaced(mapping, &maps),
+            filter,
+        }
+    }
+
+    /// Gives a point the frame of its baked normal map, if the material has one.
+    pub fn place_baked_frame(
+        &self,
+        (mesh, tangents): (&TriangleMesh, &TangentCell),
+        hit: &Hit,
+        s: &mut SurfaceInteraction,
+    ) {
+        if self.mapping.needs_baked_frame() && mesh.attributes[hit.prim as usize].has_uv {
+            let smooth = mesh.attributes[hit.prim as usize].smooth;
+            let frame = BakedFrame::fetch((mesh, tangents.get(mesh)), hit.prim, smooth);
+            frame.place((hit.u, hit.v), s);
         }
     }
 
@@ -145,8 +195,11 @@ impl<'a> FrameMaterial<'a> {
     /// What of a surface this material looks at, given that its triangle has texture coordinates or not.
     #[must_use]
     pub const fn parts(&self, has_uv: bool) -> SurfaceParts {
+        // How much of a map a cone covers is told by the gradients.
+        let has_cone = matches!(self.filter, TextureFilter::Mip);
         match (has_uv, self.mapping.is_active(), self.albedo.is_some()) {
             (true, true, _) => SurfaceParts::Gradients,
+            (true, false, true) if has_cone => SurfaceParts::Gradients,
             (true, false, true) => SurfaceParts::Uv,
             _ => SurfaceParts::Plain,
         }
@@ -177,28 +230,34 @@ pub fn amplitude(material: &Material, mapping: &MappingSettings) -> f64 {
 pub fn bind_height<'a>(
     slot: &MapSlot,
     scene: &'a Scene,
-    amplitude: f32,
-    midlevel: f32,
+    (amplitude, midlevel): (f32, f32),
+    filter: TextureFilter,
 ) -> BoundHeight<'a> {
     // Displacement A·(h − midlevel).
     let (gain, bias) = slot.gain_and_bias();
+    let heights = scene.images[slot.image].heights_of(slot);
+    let addressing = Addressing::from_slot(slot);
     BoundHeight {
-        map: scene.images[slot.image].height(slot.channel),
-        addressing: Addressing::from_slot(slot),
+        map: heights.map(),
+        addressing,
         scale: amplitude * gain,
         offset: amplitude * (bias - midlevel),
-        stored: scene.images[slot.image].height_extremes(slot.channel),
+        stored: heights.extremes(),
+        moments: None,
+        mips: (filter == TextureFilter::Mip).then(|| Mips {
+            halved: heights.halvings(),
+            rate: addressing.texels_per_uv(heights.map().size()),
+        }),
     }
 }
 
 fn bind_normal<'a>(
     slot: &MapSlot,
     scene: &'a Scene,
-    material: &Material,
-    mapping: &MappingSettings,
+    amplitude: f64,
+    filter: TextureFilter,
 ) -> BoundNormal<'a> {
     let addressing = Addressing::from_slot(slot);
-    let amplitude = amplitude(material, mapping);
     let strength = match slot.baked_amplitude {
         Some(baked) if baked > 0.0 => (amplitude / baked) as f32,
         // Nothing is known about the map's own amplitude: it is taken as it is, and vanishes with the relief.
@@ -206,15 +265,44 @@ fn bind_normal<'a>(
     };
     let green = if slot.flip_green { -1.0 } else { 1.0 };
     // A picture laid upside down or mirrored on the chart turns its slopes round with it.
-    let signs = Vec2::new(
-        1.0_f32.copysign(addressing.scale.x),
-        -green * 1.0_f32.copysign(addressing.scale.y),
-    );
+    let space = match slot.role {
+        MapRole::Normal => slot.space,
+        _ => NormalSpace::Tangent,
+    };
+    let signs = match space {
+        NormalSpace::Object => Vec2::new(1.0, green),
+        NormalSpace::Tangent | NormalSpace::MikkTSpace => Vec2::new(
+            1.0_f32.copysign(addressing.scale.x),
+            -green * 1.0_f32.copysign(addressing.scale.y),
+        ),
+    };
+    let image = &scene.images[slot.image];
     BoundNormal {
-        map: scene.images[slot.image].normal(),
+        map: image.normal(),
         addressing,
         strength,
         signs,
+        space,
+        moments: None,
+        mips: (filter == TextureFilter::Mip).then(|| Mips {
+            halved: image.normal_halvings(slot.role),
+            rate: addressing.texels_per_uv(image.normal().size()),
+        }),
+    }
+}
+
+fn bind_color<'a>(slot: &MapSlot, scene: &'a Scene, filter: TextureFilter) -> BoundColor<'a> {
+    let image = &scene.images[slot.image];
+    let addressing = Addressing::from_slot(slot);
+    BoundColor {
+        map: image.color(),
+        addressing,
+        gain: slot.gain,
+        bias: slot.bias,
+        mips: (filter == TextureFilter::Mip).then(|| Mips {
+            halved: image.color_halvings(),
+            rate: addressing.texels_per_uv(image.color().size()),
+        }),
     }
 }
 

@@ -149,6 +149,7 @@ pub fn probe(snapshot: &Snapshot, pixel: [u32; 2]) -> Option<PixelStory> {
     for index in 0..=frame.max_bounces {
         let counters = &mut Counters::default();
         let (ray, weight) = (work.rays.lanes.ray(0), work.rays.weight.0[0]);
+        let travelled = work.rays.travelled.0[0];
         let tracer = &mut work.tracer;
         trace::closest_hits(&frame, &mut work.rays, &mut hits, tracer, counters);
         work.shade_hits(
@@ -158,7 +159,12 @@ pub fn probe(snapshot: &Snapshot, pixel: [u32; 2]) -> Option<PixelStory> {
             counters,
             &mut (),
         );
-        bounces.push(one_bounce(snapshot, &frame, (&ray, weight), &work.surfaces));
+        bounces.push(one_bounce(
+            snapshot,
+            &frame,
+            (&ray, weight, travelled),
+            &work.surfaces,
+        ));
         if work.rays.active.is_empty() {
             break;
         }
@@ -217,7 +223,7 @@ fn first([r, g, b]: &Column3) -> LinearRgb {
 fn one_bounce(
     snapshot: &Snapshot,
     frame: &Frame<'_>,
-    (ray, weight): (&Ray, f32),
+    (ray, weight, travelled): (&Ray, f32, f32),
     surfaces: &Surfaces,
 ) -> BounceStory {
     let hit = nearest(frame, ray, f32::INFINITY);
@@ -233,7 +239,7 @@ fn one_bounce(
             .to_array(),
         dir: ray.dir.to_array(),
         weight,
-        hit: hit.map(|found| hit_story(snapshot, frame, ray, &found)),
+        hit: hit.map(|found| hit_story(snapshot, frame, (ray, travelled), &found)),
         color,
     }
 }
@@ -273,7 +279,12 @@ fn nearest(frame: &Frame<'_>, ray: &Ray, t_max: f32) -> Option<Nearest> {
     }
 }
 
-fn hit_story(snapshot: &Snapshot, frame: &Frame<'_>, ray: &Ray, found: &Nearest) -> HitStory {
+fn hit_story(
+    snapshot: &Snapshot,
+    frame: &Frame<'_>,
+    (ray, travelled): (&Ray, f32),
+    found: &Nearest,
+) -> HitStory {
     let hit = &found.hit;
     let normalization = &snapshot.scene.normalization;
     let attributes = frame.mesh.attributes[hit.prim as usize];
@@ -281,6 +292,11 @@ fn hit_story(snapshot: &Snapshot, frame: &Frame<'_>, ray: &Ray, found: &Nearest)
     let material = &frame.materials[index];
     let parts = material.parts(attributes.has_uv);
     let mut plain = surface_at(frame.mesh, hit, ray, parts);
+    if let Some(spread) = frame.cone_spread
+        && parts == SurfaceParts::Gradients
+    {
+        plain.footprint = surface::cone_footprint(&plain, ray.origin.into(), travelled, spread);
+    }
     if let Some(point) = &found.displaced {
         point.replace_point(&mut plain);
     }
@@ -288,7 +304,9 @@ fn hit_story(snapshot: &Snapshot, frame: &Frame<'_>, ray: &Ray, found: &Nearest)
     if found.displaced.is_some() {
         mapped.n_shade = plain.n_geo;
     }
+    material.place_baked_frame((frame.mesh, frame.tangents), hit, &mut mapped);
     let diffuse = surface::perturb(material, parts, &mut mapped, true);
+    let slope_variance = surface::slope_variance(material, parts, &mapped);
     let has_uv = parts > SurfaceParts::Plain;
     let front = plain.wo.dot(plain.n_geo) >= 0.0;
     let towards_eye = |n: V3| Vec3::from(if front { n } else { -n });
@@ -324,6 +342,7 @@ fn hit_story(snapshot: &Snapshot, frame: &Frame<'_>, ray: &Ray, found: &Nearest)
                     frame,
                     l,
                     (&mapped, diffuse, index, attributes.smooth),
+                    slope_variance,
                 )
             })
             .collect(),
@@ -336,6 +355,7 @@ fn light_story(
     frame: &Frame<'_>,
     light: &super::frame::FrameLight,
     (s, diffuse, material, smooth): (&SurfaceInteraction, LinearRgb, usize, bool),
+    slope_variance: Option<f32>,
 ) -> Option<LightStory> {
     let normalization = &snapshot.scene.normalization;
     let arriving = light::arriving(light, s.p);
@@ -365,7 +385,15 @@ fn light_story(
         Visibility::Visible
     };
     let material = &frame.materials[material];
-    let response = light::response(frame.model, material, s.n_shade, s.wo, diffuse, wi);
+    let response = light::response(
+        frame.model,
+        material,
+        s.n_shade,
+        s.wo,
+        diffuse,
+        wi,
+        slope_variance,
+    );
     let seen = if visibility == Visibility::Visible {
         irradiance
     } else {

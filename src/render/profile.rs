@@ -11,6 +11,7 @@ use super::probe::first_hit;
 use super::{Frame, Snapshot};
 use crate::geometry::{Hit, Ray};
 use crate::math::{V2, V3, normalize_or};
+use crate::scene::TextureFilter;
 use crate::surface::mapping::relief::{Layers, ReliefField, is_shadowed};
 use crate::surface::mapping::{Derivative, MappingSettings, Method};
 use crate::surface::{SurfaceInteraction, SurfaceParts, surface_at};
@@ -119,6 +120,8 @@ pub fn profile(snapshot: &Snapshot, pixel: [u32; 2]) -> Result<ReliefProfile, No
     let truth_settings = with_method(&snapshot.settings.mapping, Method::Exact);
     let mut settings = (*snapshot.settings).clone();
     settings.mapping = truth_settings;
+    // What methods do at points, whatever the picture's filter makes of it.
+    settings.shading.filter = TextureFilter::Bilinear;
     let exact = Snapshot {
         settings: Arc::new(settings),
         ..snapshot.clone()
@@ -135,12 +138,19 @@ pub fn profile(snapshot: &Snapshot, pixel: [u32; 2]) -> Result<ReliefProfile, No
     }
     let cut = Cut::new(&frame, field, &ray, &hit)?;
     let mut truth = cut.surface;
+    material.place_baked_frame((frame.mesh, frame.tangents), &hit, &mut truth);
     material.mapping.apply(&mut truth, true);
     let run = |method: Method, edit: &dyn Fn(&mut MappingSettings)| {
         let mut mapping = with_method(&snapshot.settings.mapping, method);
         edit(&mut mapping);
-        let material = FrameMaterial::new(&exact.settings.materials[index], &exact.scene, &mapping);
+        let material = FrameMaterial::new(
+            &exact.settings.materials[index],
+            &exact.scene,
+            &mapping,
+            &exact.settings.shading,
+        );
         let mut s = cut.surface;
+        material.place_baked_frame((frame.mesh, frame.tangents), &hit, &mut s);
         material.mapping.apply(&mut s, true);
         s
     };

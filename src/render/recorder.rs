@@ -12,6 +12,7 @@ use super::stages::{
 };
 use super::suspect::Suspect;
 use crate::geometry::{Hit, HitLanes};
+use crate::scene::TextureFilter;
 use crate::surface::displaced::Tracer;
 use crate::surface::mapping::BoundHeight;
 use crate::surface::{SurfaceInteraction, SurfaceParts, surface_at};
@@ -45,7 +46,8 @@ impl<'a> Yardsticks<'a> {
                 .filter(|slot| slot.image < scene.images.len());
             let gain = slot.map_or(1.0, |slot| slot.gain_and_bias().0.abs());
             Yardstick {
-                height: slot.map(|slot| bind_height(slot, scene, 1.0, 0.0)),
+                height: slot
+                    .map(|slot| bind_height(slot, scene, (1.0, 0.0), TextureFilter::Bilinear)),
                 amplitude: scene.normalization.internal_length(world) * gain,
             }
         };

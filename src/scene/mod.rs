@@ -16,7 +16,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::geometry::bvh::Bvh;
-use crate::geometry::{Normalization, TriangleMesh};
+use crate::geometry::{Normalization, TangentCell, TriangleMesh};
 use crate::surface::displaced::DisplacementCell;
 use crate::texture::MapImage;
 
@@ -24,6 +24,7 @@ pub use camera::{Camera, CameraAxes};
 pub use open::{built_in_names, open};
 pub use settings::{
     Background, BentNormals, DisplaySettings, RenderSettings, ShadingModel, ShadingSettings,
+    TextureFilter,
 };
 pub use view::{View, ViewKind};
 pub use warning::{LoadError, LoadWarning};
@@ -75,6 +76,8 @@ pub struct Scene {
     pub facts: ModelFacts,
     /// The displaced surface that was asked for last.
     pub displaced: DisplacementCell,
+    /// Tangents as bakers make them, once a material asks for them.
+    pub tangents: TangentCell,
 }
 
 /// A scene with the settings it starts from and what was doubtful about it.

@@ -73,6 +73,30 @@ impl BentNormals {
     }
 }
 
+/// How maps are read where a ray's cone covers many texels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TextureFilter {
+    /// At points, bilinear: many samples per pixel do the filtering.
+    #[default]
+    Bilinear,
+    /// As means over the cone, from maps halved again and again: calm with few samples, a little blurred.
+    Mip,
+}
+
+impl TextureFilter {
+    /// Both, for menus and tests.
+    pub const ALL: [Self; 2] = [Self::Bilinear, Self::Mip];
+
+    /// Name in scene files and menus.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Bilinear => "bilinear",
+            Self::Mip => "mip",
+        }
+    }
+}
+
 /// What rays see that leave the scene: a vertical gradient along the camera's up direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Background {
@@ -100,6 +124,10 @@ pub struct ShadingSettings {
     pub model: ShadingModel,
     /// Normals bent by maps.
     pub bent_normals: BentNormals,
+    /// How maps of colour, and those that tilt normals, are read.
+    pub filter: TextureFilter,
+    /// Whether highlights widen where a cone covers slopes that differ. Asks for [`TextureFilter::Mip`].
+    pub specular_antialiasing: bool,
     /// Whether shadow rays are traced.
     pub shadows: bool,
     /// Mirror bounces at the most; 0 shows no reflections.
@@ -113,6 +141,8 @@ impl Default for ShadingSettings {
         Self {
             model: ShadingModel::Normalized,
             bent_normals: BentNormals::Lifted,
+            filter: TextureFilter::Bilinear,
+            specular_antialiasing: false,
             shadows: true,
             max_bounces: 3,
             background: Background::plain(LinearRgb::BLACK),

@@ -6,4 +6,4 @@ mod phong;
 
 pub use light::{Falloff, Light, LightKind};
 pub use material::Material;
-pub use phong::{mirror_direction, phong_lobe, reflect, softened_horizon};
+pub use phong::{mirror_direction, phong_lobe, reflect, softened_horizon, widened_exponent};

@@ -1,5 +1,7 @@
 //! Diffuse and specular reflection of one light (report 2.10–2.14, corrected).
 
+use std::ops::Mul;
+
 use crate::math::{Mask as _, Real, V3, power_below_one};
 
 /// Mirror image of the unit direction `w` about the unit normal: `R = 2 (N·w) N − w` (2.11–2.12).
@@ -13,7 +15,11 @@ pub fn reflect<F: Real>(n: V3<F>, w: V3<F>) -> V3<F> {
 /// does not point away from the eye, so that a power was taken. `0⁰` counts as 1.
 #[inline(always)]
 #[must_use]
-pub fn phong_lobe<F: Real>(r: V3<F>, v: V3<F>, exponent: f32) -> (F, F::Mask) {
+pub fn phong_lobe<F: Real + Mul<E, Output = F>, E>(
+    r: V3<F>,
+    v: V3<F>,
+    exponent: E,
+) -> (F, F::Mask) {
     let zero = r.x.splat(0.0);
     let faces = r.dot(v).gt(zero);
     if !faces.any() {
@@ -24,6 +30,19 @@ pub fn phong_lobe<F: Real>(r: V3<F>, v: V3<F>, exponent: f32) -> (F, F::Mask) {
     let miss = (apart.dot(apart) * 0.5).smaller(zero.splat(1.0));
     let lobe = power_below_one(miss, exponent);
     (F::select(faces, lobe, zero), faces)
+}
+
+/// Exponent of a lobe over normals whose slopes differ: `s / (1 + 4 s v)` for a variance `v` of slopes, the mean
+/// of both axes.
+///
+/// Blinn's lobe of exponent `n` is nearly that of slopes with variance `1/n`, variances add, and Phong's lobe is
+/// Blinn's with four times the exponent.
+///
+/// Source: Olano & Baker 2010, "LEAN Mapping"; Toksvig 2005, "Mipmapping Normal Maps".
+#[inline(always)]
+#[must_use]
+pub fn widened_exponent<F: Real>(exponent: f32, slope_variance: F) -> F {
+    slope_variance.splat(exponent) / (slope_variance * (4.0 * exponent) + 1.0)
 }
 
 /// Share of the light from the unit direction `wi` that a bent normal keeps: 1 far from the horizon of the

@@ -6,6 +6,9 @@ use super::{Facet, FacetKind, SurfaceInteraction};
 use crate::geometry::{Hit, Ray, TriangleMesh};
 use crate::math::{Real, V2, V3, gamma};
 
+/// A surface seen at a smaller cosine counts as seen at this one: cones are not longer than a thousand widths.
+const MIN_COS: f32 = 1e-3;
+
 /// How much of the record a material needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SurfaceParts {
@@ -65,6 +68,7 @@ pub fn surface_on<F: Real>(
         grad_v: facet.grad_v,
         dp_du: facet.dp_du,
         handedness: facet.handedness,
+        footprint: zero,
         sunk: zero,
         steps: zero,
     };
@@ -87,6 +91,19 @@ pub fn surface_on<F: Real>(
         s.grad_v = s.grad_v - n * n.dot(s.grad_v);
     }
     s
+}
+
+/// Side of the square of texture coordinates that a cone of this width (internal units) covers around a point:
+/// the width seen at a slant, times the square root of the chart's area per area.
+///
+/// Source: Akenine-Möller et al. 2019, "Texture Level of Detail Strategies for Real-Time Ray Tracing".
+#[inline(always)]
+#[must_use]
+pub fn footprint<F: Real>(width: F, s: &SurfaceInteraction<F>) -> F {
+    let cos = s.wo.dot(s.n_geo).abs().larger(width.splat(MIN_COS));
+    let area = s.grad_u.cross(s.grad_v).length();
+    let side = width * area.sqrt() / cos;
+    F::select(side.is_finite(), side, width.splat(0.0))
 }
 
 /// Texture coordinate of a hit, for cut-out decisions that need nothing else.

@@ -27,6 +27,9 @@ pub struct SurfaceInteraction<F = f32> {
     pub dp_du: V3<F>,
     /// `+1`, or `−1` where the texture is mirrored, or 0 where it has no area.
     pub handedness: F,
+    /// Side of the square that the ray's cone covers, in units of texture coordinates; 0 where maps are read at
+    /// points.
+    pub footprint: F,
     /// How far the place that a search found lies under the triangle's plane, along `n_geo`; negative over
     /// it, 0 without a search. `p` is that place.
     pub sunk: F,

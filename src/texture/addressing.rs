@@ -37,6 +37,13 @@ impl Addressing {
         }
     }
 
+    /// Texels per unit of texture coordinates on a picture of `size`: the geometric mean of both directions.
+    #[must_use]
+    pub fn texels_per_uv(&self, size: Vec2) -> f32 {
+        let texels = (size * self.scale).abs();
+        (texels.x * texels.y).sqrt()
+    }
+
     /// Place on the picture of a surface point's `uv`.
     #[must_use]
     #[inline(always)]

@@ -2,6 +2,9 @@
 
 use std::sync::LazyLock;
 
+use glam::Vec2;
+
+use super::mips::halvings;
 use super::{Grid, RawImage, Samples, Wrap};
 use crate::math::{Bits as _, LinearRgb, Real, V2, linear_from_srgb};
 
@@ -63,6 +66,29 @@ impl ColorMap {
                 LinearRgb::from(g.mix(&g.cell(st, wrap), bits, reals::<F>))
             }
         }
+    }
+
+    /// The map halved again and again: means of linear colours, not rounded to bytes.
+    #[must_use]
+    pub fn halvings(&self) -> Vec<Self> {
+        let levels = match self {
+            Self::Srgb8(g) => halvings([g.width(), g.height()], |x, y| {
+                let [r, g, b, _] = g.at(x, y);
+                [r, g, b].map(|byte| LINEAR_FROM_BYTE[usize::from(byte)])
+            }),
+            Self::Linear(g) => halvings([g.width(), g.height()], |x, y| g.at(x, y)),
+        };
+        levels.into_iter().map(Self::Linear).collect()
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> Vec2 {
+        let [w, h] = match self {
+            Self::Srgb8(g) => [g.width(), g.height()],
+            Self::Linear(g) => [g.width(), g.height()],
+        };
+        Vec2::new(w as f32, h as f32)
     }
 
     /// Heap bytes.

@@ -3,6 +3,7 @@
 use glam::Vec2;
 
 use super::grid::BilinearCell;
+use super::mips::halvings;
 use super::{Channel, Grid, RawImage, Samples, Wrap};
 use crate::math::{Bits as _, Real, V2};
 
@@ -60,6 +61,18 @@ impl HeightMap {
             Self::U16(g) => g.height(),
             Self::F32(g) => g.height(),
         }
+    }
+
+    /// The map halved again and again: means of heights.
+    #[must_use]
+    pub fn halvings(&self) -> Vec<Self> {
+        let size = [self.width(), self.height()];
+        let levels = halvings(size, |x, y| [self.texel(x, y)]).into_iter();
+        let plain = |level: Grid<[f32; 1]>| {
+            let texels = level.texels().iter().map(|[height]| *height);
+            Grid::new(level.width(), level.height(), texels.collect())
+        };
+        levels.map(|level| Self::F32(plain(level))).collect()
     }
 
     /// Heap bytes.

@@ -1,8 +1,11 @@
 //! Tangent-space normals and slopes: raw numbers, never sRGB-decoded.
 
+use glam::{Vec2, Vec3};
+
 use super::color_map::reals;
-use super::{Grid, RawImage, Samples, Wrap};
-use crate::math::{Bits as _, Real, V2, V3};
+use super::mips::halvings;
+use super::{Grid, MapRole, RawImage, Samples, Wrap};
+use crate::math::{Bits as _, Real, V2, V3, normalize_or};
 
 /// Three numbers a texel, read as `2c − 1`.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,6 +69,51 @@ impl NormalMap {
             }
         };
         V3::new(x * factor - 1.0, y * factor - 1.0, z * factor - 1.0)
+    }
+
+    /// The map halved again and again: means of stored vectors, brought to unit length before (so that rounding
+    /// does not pass for roughness) and not after. Of slopes, whose third number means nothing, as they are.
+    #[must_use]
+    pub fn halvings(&self, role: MapRole) -> Vec<Self> {
+        let stored = |x: u32, y: u32| {
+            let [r, g, b] = self.fraction(x, y);
+            if role == MapRole::Slope {
+                return [r, g, b];
+            }
+            let m = Vec3::new(r, g, b) * 2.0 - 1.0;
+            (normalize_or(m, Vec3::ZERO) * 0.5 + 0.5).to_array()
+        };
+        let [w, h] = self.size().to_array().map(|n| n as u32);
+        halvings([w, h], stored)
+            .into_iter()
+            .map(Self::F32)
+            .collect()
+    }
+
+    /// The numbers of a texel as fractions.
+    pub(super) fn fraction(&self, x: u32, y: u32) -> [f32; 3] {
+        match self {
+            Self::U8(g) => {
+                let [r, g, b, _] = g.at(x, y);
+                [r, g, b].map(|c| f32::from(c) / 255.0)
+            }
+            Self::U16(g) => {
+                let [r, g, b, _] = g.at(x, y);
+                [r, g, b].map(|c| f32::from(c) / 65_535.0)
+            }
+            Self::F32(g) => g.at(x, y),
+        }
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> Vec2 {
+        let [w, h] = match self {
+            Self::U8(g) => [g.width(), g.height()],
+            Self::U16(g) => [g.width(), g.height()],
+            Self::F32(g) => [g.width(), g.height()],
+        };
+        Vec2::new(w as f32, h as f32)
     }
 
     /// Heap bytes.

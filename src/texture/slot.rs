@@ -12,7 +12,7 @@ pub enum MapRole {
     Albedo,
     /// Heights; white is high.
     Height,
-    /// Tangent-space normals, `n = 2c − 1`.
+    /// Normals, `n = 2c − 1`, in the slot's [`NormalSpace`].
     Normal,
     /// Slopes, the report's letter: `R = h_x`, `G = h_y`, each stored as `(h + 1) / 2`.
     Slope,
@@ -77,6 +77,35 @@ impl Channel {
     }
 }
 
+/// In which directions a normal map tells its vectors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NormalSpace {
+    /// Along +u, +v and the smooth normal of each point, made perpendicular: the surface-gradient frame.
+    #[default]
+    Tangent,
+    /// The interpolated frame of MikkTSpace, which most bakers write for.
+    #[serde(rename = "mikktspace")]
+    MikkTSpace,
+    /// The axes of the model's file.
+    Object,
+}
+
+impl NormalSpace {
+    /// Every space, for menus and tests.
+    pub const ALL: [Self; 3] = [Self::Tangent, Self::MikkTSpace, Self::Object];
+
+    /// Name in scene files and menus.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Tangent => "tangent",
+            Self::MikkTSpace => "mikktspace",
+            Self::Object => "object",
+        }
+    }
+}
+
 /// One picture in one role. Plain numbers that a panel edits; no pixel is touched by a change.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapSlot {
@@ -92,6 +121,10 @@ pub struct MapSlot {
     pub invert: bool,
     /// Normals and slopes: the green channel grows downwards (DirectX, −Y).
     pub flip_green: bool,
+    /// Normals: the directions that they are told in.
+    pub space: NormalSpace,
+    /// Heights: smoothed within half a stored level, see [`destaired`](super::destaired).
+    pub destair: bool,
     /// The picture's first row lies at v = 0 instead of v = 1.
     pub flip_v: bool,
     /// Beyond the border.
@@ -125,6 +158,8 @@ impl MapSlot {
             channel: Channel::Luma,
             invert: false,
             flip_green: false,
+            space: NormalSpace::Tangent,
+            destair: false,
             flip_v: false,
             wrap: Wrap::Repeat,
             uv_scale: [1.0, 1.0],

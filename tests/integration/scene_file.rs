@@ -11,11 +11,12 @@ use reliefscope::scene::file::{SaveError, SceneView, apply_overrides, read_scene
 use reliefscope::scene::load::LoadOptions;
 use reliefscope::scene::save_picture::write_png;
 use reliefscope::scene::{
-    Background, BentNormals, Camera, LoadError, LoadedScene, SceneSource, ShadingModel, View, open,
+    Background, BentNormals, Camera, LoadError, LoadedScene, SceneSource, ShadingModel,
+    TextureFilter, View, open,
 };
 use reliefscope::shading::{Falloff, Light, LightKind, Material};
 use reliefscope::surface::mapping::{Derivative, Lookup, Method, SearchSettings};
-use reliefscope::texture::{Channel, MapRole, MapSlot, Wrap};
+use reliefscope::texture::{Channel, MapRole, MapSlot, NormalSpace, Wrap};
 use tempfile::TempDir;
 
 const MODEL: &str = "mtllib plane.mtl
@@ -191,6 +192,8 @@ impl Random {
             channel: self.of(&Channel::ALL),
             invert: self.flag(),
             flip_green: self.flag(),
+            space: self.of(&NormalSpace::ALL),
+            destair: self.flag(),
             flip_v: self.flag(),
             wrap: self.of(&Wrap::ALL),
             uv_scale: [self.number(), self.number()],
@@ -237,6 +240,8 @@ impl Random {
         }
         settings.shading.model = self.of(&ShadingModel::ALL);
         settings.shading.bent_normals = self.of(&BentNormals::ALL);
+        settings.shading.filter = self.of(&TextureFilter::ALL);
+        settings.shading.specular_antialiasing = self.flag();
         settings.shading.shadows = self.flag();
         settings.shading.max_bounces = self.below(65);
         let top = self.color();
@@ -446,6 +451,8 @@ fn full_text(folder: &Folder) -> String {
         channel: Channel::Alpha,
         invert: true,
         flip_green: true,
+        space: NormalSpace::Object,
+        destair: true,
         flip_v: true,
         wrap: Wrap::Mirror,
         uv_scale: [2.0, 3.0],

@@ -77,6 +77,7 @@ pub(super) fn grid_snapshot(mesh: TriangleMesh, bvh: Bvh, size: [u32; 2]) -> Sna
         normalization: Normalization::IDENTITY,
         images: Vec::new(),
         displaced: crate::surface::displaced::DisplacementCell::default(),
+        tangents: crate::geometry::TangentCell::default(),
         facts: ModelFacts::default(),
     };
     let mut material = Material::matte("grid", LinearRgb::new(0.6, 0.6, 0.6));

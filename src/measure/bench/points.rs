@@ -107,6 +107,7 @@ fn slanted<F: Real>(uv: V2<F>) -> SurfaceInteraction<F> {
         grad_v: splat(0.0, 1.0, 0.0),
         dp_du: splat(1.0, 0.0, 0.0),
         handedness: like.splat(1.0),
+        footprint: like,
         sunk: like.splat(0.0),
         steps: like.splat(0.0),
     }

@@ -84,7 +84,9 @@ impl<'a> TrueView<'a> {
             if frame.displaced.is_some() {
                 displaced(frame, &mut s, &mut tracer);
             } else {
-                frame.materials[sight.material].mapping.apply(&mut s, true);
+                let material = &frame.materials[sight.material];
+                material.place_baked_frame((frame.mesh, frame.tangents), &sight.hit, &mut s);
+                material.mapping.apply(&mut s, true);
             }
             let rates = field.texels_per_uv();
             let du = (f64::from(s.uv.x) - landing.uv.x) * rates[0];

@@ -2,8 +2,8 @@
 
 use super::facet::Facet;
 use super::truth::MIN_COS;
-use crate::geometry::Ray;
 use crate::geometry::triangle::Watertight;
+use crate::geometry::{Hit, Ray};
 use crate::math::{V2, hash, unit_interval};
 use crate::render::Frame;
 use crate::surface::displaced::Tracer;
@@ -14,6 +14,8 @@ use crate::surface::{SurfaceInteraction, SurfaceParts, surface_at, uv_at};
 pub struct Sight {
     /// Index of the material.
     pub material: usize,
+    /// Where the ray meets the mesh.
+    pub hit: Hit,
     /// The surface as the renderer has it, before any map changes it.
     pub surface: SurfaceInteraction,
     /// The same in double precision.
@@ -118,6 +120,7 @@ impl<'a> Pinhole<'a> {
         let seen = facet.cos() > MIN_COS && has_chart && surface.handedness != 0.0;
         Some(seen.then_some(Sight {
             material,
+            hit,
             surface,
             facet,
         }))

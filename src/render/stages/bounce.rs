@@ -126,6 +126,13 @@ impl Kernel for MirrorRays<'_> {
                     bound = bound + way_out.abs().dot(n_geo.abs()) * rounding;
                 }
                 let origin = offset_by_bound(p, bound, n_geo, dir);
+                if self.frame.cone_spread.is_some() {
+                    // A mirror image is as far away as the way there and on: its cone grows as if there were
+                    // no mirror.
+                    let way = get3(simd, &from.p, group) - get3(simd, &to.lanes.origin, group);
+                    let travelled = to.travelled.get(simd, group) + way.length();
+                    set(&mut to.travelled, group, mask, travelled);
+                }
                 set3(&mut to.lanes.origin, group, mask, origin);
                 set3(&mut to.lanes.dir, group, mask, dir);
                 let far = Wide::new(simd, f32::INFINITY);

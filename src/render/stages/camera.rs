@@ -26,6 +26,9 @@ pub fn camera_rays(frame: &Frame<'_>, pixels: &Pixels, index: u32, rays: &mut Ra
     rays.count = PLACES;
     rays.active = pixels.active;
     rays.weight = Column::splat(1.0);
+    if frame.cone_spread.is_some() {
+        rays.travelled = Column::splat(0.0);
+    }
     rays.lanes.leaving = Lanes::splat(NO_HIT);
     let [x, y, z] = frame.camera.origin.to_array();
     rays.lanes.origin = [Column::splat(x), Column::splat(y), Column::splat(z)];

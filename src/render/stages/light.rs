@@ -17,7 +17,7 @@ use crate::math::simd::{Kernel, Simd};
 use crate::math::wide::Wide;
 use crate::math::{LinearRgb, Real, V3, gamma};
 use crate::scene::{BentNormals, ShadingModel};
-use crate::shading::{Falloff, phong_lobe, reflect, softened_horizon};
+use crate::shading::{Falloff, phong_lobe, reflect, softened_horizon, widened_exponent};
 use crate::surface::displaced::Tracer;
 
 /// Shadow rays end this share short of the light, so that a mesh around the lamp does not shadow it by
@@ -235,6 +235,9 @@ impl Kernel for AddLight<'_> {
                     -get3(simd, &self.rays.lanes.dir, group),
                     get_rgb(simd, &surfaces.diffuse, group),
                     get3(simd, &self.shadows.rays.dir, group),
+                    material
+                        .widens_highlights
+                        .then(|| surfaces.slope_variance.get(simd, group)),
                 );
                 powers.add(group, response.took_power & mask);
                 let mut falloff = self.shadows.falloff.get(simd, group);
@@ -295,6 +298,7 @@ pub fn response<F: Real>(
     wo: V3<F>,
     diffuse: LinearRgb<F>,
     wi: V3<F>,
+    slope_variance: Option<F>,
 ) -> Response<F> {
     let (diffuse_factor, specular_factor) = factors(model, material);
     let cos = n_shade.dot(wi);
@@ -307,7 +311,18 @@ pub fn response<F: Real>(
             took_power: zero.lt(zero),
         };
     }
-    let (lobe, took_power) = phong_lobe(reflect(n_shade, wi), wo, material.shininess);
+    let r = reflect(n_shade, wi);
+    let (specular_factor, (lobe, took_power)) = match slope_variance {
+        None => (
+            zero.splat(specular_factor),
+            phong_lobe(r, wo, material.shininess),
+        ),
+        Some(variance) => {
+            let exponent = widened_exponent(material.shininess, variance);
+            let factor = widened_factor(model, material.shininess, exponent);
+            (factor, phong_lobe(r, wo, exponent))
+        }
+    };
     let foreshortened = match model {
         ShadingModel::Normalized => lobe * cos,
         ShadingModel::Report => lobe,
@@ -316,6 +331,16 @@ pub fn response<F: Real>(
         diffuse,
         specular: LinearRgb::splat(zero, material.ks) * (foreshortened * specular_factor),
         took_power,
+    }
+}
+
+/// Factor of the specular term of a widened lobe. What the report leaves unnormalised keeps its energy,
+/// `2π/(s+1)`.
+#[inline(always)]
+fn widened_factor<F: Real>(model: ShadingModel, shininess: f32, exponent: F) -> F {
+    match model {
+        ShadingModel::Report => (exponent + 1.0) / exponent.splat(shininess + 1.0),
+        ShadingModel::Normalized => (exponent + 2.0) / exponent.splat(TAU),
     }
 }
 

@@ -9,6 +9,7 @@
 pub mod bounce;
 pub mod camera;
 pub mod displaced;
+mod facets;
 pub mod film;
 pub mod light;
 pub mod relief;
@@ -72,6 +73,8 @@ pub struct Rays {
     pub lanes: RayLanes<PLACES>,
     /// Share of each ray's colour in its pixel.
     pub weight: Column,
+    /// Length of the way from the eye to where each ray starts. Kept only where cones are followed.
+    pub travelled: Column,
 }
 
 /// Places whose surfaces are made alike.
@@ -129,6 +132,8 @@ pub struct Surfaces {
     pub n_geo: Column3,
     /// Perturbed normals towards the eye.
     pub n_shade: Column3,
+    /// Variance of slopes under each. Kept only for materials whose highlights widen by it.
+    pub slope_variance: Column,
     /// Diffuse colours: `k_d` times the albedo map.
     pub diffuse: Column3,
     /// Reflected light.
@@ -190,6 +195,7 @@ impl Default for Scratch {
                     active: Places::EMPTY,
                     lanes: RayLanes::none(),
                     weight: Column::splat(0.0),
+                    travelled: Column::splat(0.0),
                 },
                 surfaces: Surfaces {
                     runs: Vec::new(),
@@ -197,6 +203,7 @@ impl Default for Scratch {
                     bound: Column::splat(0.0),
                     n_geo: ZEROS,
                     n_shade: ZEROS,
+                    slope_variance: Column::splat(0.0),
                     diffuse: ZEROS,
                     reflected: ZEROS,
                     relief: ReliefPoints {

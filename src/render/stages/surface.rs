@@ -2,6 +2,7 @@
 
 use super::super::material::FrameMaterial;
 use super::super::{Counters, Frame};
+use super::facets::Facets;
 use super::walks::Walks;
 use super::{
     Column, PLACES, Places, Rays, ReliefPoints, Run, Surfaces, get3, groups, set, set_rgb, set3,
@@ -9,10 +10,11 @@ use super::{
 use crate::geometry::{HitLanes, NO_HIT};
 use crate::math::lanes::ones;
 use crate::math::simd::{Kernel, Simd, SimdBase as _, SimdLevel, SimdMask as _};
-use crate::math::wide::{Wide, WideBits, WideMask};
-use crate::math::{Bits as _, LinearRgb, Mask as _, Real as _, V2, V3};
+use crate::math::wide::{Wide, WideBits};
+use crate::math::{Bits as _, LinearRgb, Mask as _, Real as _, V3};
+use crate::scene::TextureFilter;
 use crate::surface::mapping::relief::{ReliefField, found, landed, sinking_ray, view_ray};
-use crate::surface::{Facet, FacetKind, SurfaceInteraction, SurfaceParts, surface_on};
+use crate::surface::{BakedFrame, FacetKind, SurfaceInteraction, SurfaceParts, footprint};
 
 /// Makes the surfaces that the rays hit, perturbed by their materials' maps and turned towards the eye.
 pub fn mapped_surfaces(
@@ -127,7 +129,7 @@ fn run_of(frame: &Frame<'_>, prim: u32, runs: &mut Vec<Run>, likely: usize) -> u
 /// Counts the look-ups that a run costs.
 fn count(material: &FrameMaterial<'_>, run: &Run, counters: &mut Counters) {
     let points = run.places.count();
-    if run.kind.parts == SurfaceParts::Gradients {
+    if run.kind.parts == SurfaceParts::Gradients && material.mapping.is_active() {
         counters.perturbations += points;
     }
     counters.texture_fetches += points * fetches_per_point(material, run);
@@ -141,7 +143,12 @@ pub fn fetches_per_point(material: &FrameMaterial<'_>, run: &Run) -> u64 {
         0
     };
     let has_color = material.albedo.is_some() && run.kind.parts >= SurfaceParts::Uv;
-    mapping + u64::from(has_color)
+    // A mean lies between two of the halvings.
+    let each = match material.filter {
+        TextureFilter::Bilinear => 1,
+        TextureFilter::Mip => 2,
+    };
+    each * (mapping + u64::from(has_color))
 }
 
 /// The texture coordinates of a run's points, and how they change along the view rays.
@@ -210,12 +217,25 @@ impl Kernel for MapRun<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let material = &self.frame.materials[self.run.material];
+        let perturbed = self.run.kind.parts == SurfaceParts::Gradients;
         let searches = self.run.searches;
         let walked = material.mapping.walks().is_some() && searches;
         let mut facets = Facets::new(self.frame, self.run.kind);
         for group in self.run.places.groups::<S>() {
             let mask = self.run.places.mask(simd, group);
             let mut s = facets.surface(simd, (&self.run, group), self.rays, self.hits);
+            if let Some(spread) = self.frame.cone_spread
+                && self.run.kind.parts == SurfaceParts::Gradients
+            {
+                let origin = get3(simd, &self.rays.lanes.origin, group);
+                let travelled = self.rays.travelled.get(simd, group);
+                s.footprint = cone_footprint(&s, origin, travelled, spread);
+            }
+            if perturbed && material.mapping.needs_baked_frame() {
+                let frame = self.baked_frame(simd, group);
+                let barycentrics = (self.hits.u.get(simd, group), self.hits.v.get(simd, group));
+                frame.place(barycentrics, &mut s);
+            }
             if walked {
                 let from = &self.surfaces.relief;
                 let [u, v] = &from.uv;
@@ -228,9 +248,10 @@ impl Kernel for MapRun<'_> {
                 let usable = from.usable.mask(simd, group);
                 let found = found(&s, [u, v, z, from.steps.get(simd, group)], usable);
                 material.mapping.apply_found(&mut s, &found);
-            } else if self.run.kind.parts == SurfaceParts::Gradients {
+            } else if perturbed {
                 material.mapping.apply(&mut s, mask);
             }
+            let slope_variance = slope_variance(material, self.run.kind.parts, &s);
             if let Some(points) = self
                 .hits
                 .displaced
@@ -241,13 +262,16 @@ impl Kernel for MapRun<'_> {
                 s.n_geo = get3(simd, &points.normal, group);
                 s.n_shade = s.n_geo;
             }
-            let diffuse = diffuse(material, self.run.kind.parts, s.uv);
+            let diffuse = diffuse(material, self.run.kind.parts, &s);
             // Perturbed on the front side; an eye behind it sees the other side of the same relief.
             let from_behind = s.wo.dot(s.n_geo).lt(Wide::new(simd, 0.0));
             let n_geo = V3::select(from_behind, -s.n_geo, s.n_geo);
             let n_shade = V3::select(from_behind, -s.n_shade, s.n_shade);
             let to = &mut *self.surfaces;
             set3(&mut to.p, group, mask, s.p);
+            if let Some(variance) = slope_variance {
+                set(&mut to.slope_variance, group, mask, variance);
+            }
             let bound = match &self.hits.displaced {
                 Some(points) if self.run.displaced => points.bound.get(simd, group),
                 _ => s.n_geo.abs().dot(s.p_error),
@@ -270,62 +294,31 @@ impl Kernel for MapRun<'_> {
     }
 }
 
-/// The triangles under a run's points. On large triangles all lanes share one; it is prepared once and
-/// kept for the groups that follow.
-struct Facets<'a> {
-    frame: &'a Frame<'a>,
-    kind: FacetKind,
-    last: Option<(u32, Facet)>,
+impl MapRun<'_> {
+    /// The frames of baked normal maps on the triangles of a group.
+    #[inline(always)]
+    fn baked_frame<S: Simd>(&self, simd: S, group: usize) -> BakedFrame<Wide<S>> {
+        let Self { frame, run, .. } = self;
+        let prims = self.hits.prim.get(simd, group);
+        let lane = run.places.bits::<S>(group).trailing_zeros() as usize;
+        let one = prims.splat(prims.0.as_slice()[lane]);
+        // Lanes outside the mask hold no triangle: they take part with any.
+        let prims = WideBits::select(run.places.mask(simd, group), prims, one);
+        let from = (frame.mesh, frame.tangents.get(frame.mesh));
+        BakedFrame::fetch(from, prims, run.kind.smooth)
+    }
 }
 
-impl<'a> Facets<'a> {
-    #[inline(always)]
-    const fn new(frame: &'a Frame<'a>, kind: FacetKind) -> Self {
-        Self {
-            frame,
-            kind,
-            last: None,
-        }
-    }
-
-    /// The surfaces of a group before any map.
-    #[inline(always)]
-    fn surface<S: Simd>(
-        &mut self,
-        simd: S,
-        (run, group): (&Run, usize),
-        rays: &Rays,
-        hits: &HitLanes<PLACES>,
-    ) -> SurfaceInteraction<Wide<S>> {
-        let lane = run.places.bits::<S>(group).trailing_zeros() as usize;
-        let mask = run.places.mask(simd, group);
-        let facet = self.facet(hits.prim.get(simd, group), (mask, lane));
-        let barycentrics = (hits.u.get(simd, group), hits.v.get(simd, group));
-        let wo = -get3(simd, &rays.lanes.dir, group);
-        surface_on(&facet, barycentrics, wo, self.kind)
-    }
-
-    /// The triangle of each lane. `lane` is one in the mask.
-    #[inline(always)]
-    fn facet<S: Simd>(
-        &mut self,
-        prims: WideBits<S>,
-        (mask, lane): (WideMask<S>, usize),
-    ) -> Facet<Wide<S>> {
-        let (mesh, kind) = (self.frame.mesh, self.kind);
-        let prim = prims.0.as_slice()[lane];
-        if !(prims.equals(prim) | !mask).all() {
-            // Lanes outside the mask hold no triangle: they take part with any.
-            let prims = WideBits::select(mask, prims, prims.splat(prim));
-            return Facet::fetch(mesh, prims, kind);
-        }
-        let facet = match self.last {
-            Some((cached, facet)) if cached == prim => facet,
-            _ => Facet::fetch(mesh, prim, kind),
-        };
-        self.last = Some((prim, facet));
-        Facet::splat(prims.to_real(), &facet)
-    }
+/// What the cone of a ray covers that comes from `origin` after a way of `travelled`.
+#[inline(always)]
+pub fn cone_footprint<F: crate::math::Real>(
+    s: &SurfaceInteraction<F>,
+    origin: V3<F>,
+    travelled: F,
+    spread: f32,
+) -> F {
+    let width = (travelled + (s.p - origin).length()) * spread;
+    footprint(width, s)
 }
 
 /// Applies the material's maps to one point or to one in each lane; returns the diffuse colour.
@@ -339,19 +332,32 @@ pub fn perturb<F: crate::math::Real>(
     if parts == SurfaceParts::Gradients {
         material.mapping.apply(s, wanted);
     }
-    diffuse(material, parts, s.uv)
+    diffuse(material, parts, s)
 }
 
-/// The diffuse colour at a texture coordinate.
+/// How much slopes differ under a point that maps were applied to, if its highlight widens by it.
+#[inline(always)]
+pub fn slope_variance<F: crate::math::Real>(
+    material: &FrameMaterial<'_>,
+    parts: SurfaceParts,
+    s: &SurfaceInteraction<F>,
+) -> Option<F> {
+    material.widens_highlights.then(|| match parts {
+        SurfaceParts::Gradients => material.mapping.slope_variance(s),
+        _ => s.footprint.splat(0.0),
+    })
+}
+
+/// The diffuse colour at a point.
 #[inline(always)]
 fn diffuse<F: crate::math::Real>(
     material: &FrameMaterial<'_>,
     parts: SurfaceParts,
-    uv: V2<F>,
+    s: &SurfaceInteraction<F>,
 ) -> LinearRgb<F> {
-    let kd = LinearRgb::splat(uv.x, material.kd);
+    let kd = LinearRgb::splat(s.uv.x, material.kd);
     match &material.albedo {
-        Some(albedo) if parts >= SurfaceParts::Uv => kd * albedo.color(uv),
+        Some(albedo) if parts >= SurfaceParts::Uv => kd * albedo.color(s.uv, s.footprint),
         _ => kd,
     }
 }

@@ -39,6 +39,7 @@ pub fn assemble(
     };
     Scene {
         displaced: crate::surface::displaced::DisplacementCell::default(),
+        tangents: crate::geometry::TangentCell::default(),
         name: name.to_owned(),
         source,
         bvh: Bvh::build(&internal),

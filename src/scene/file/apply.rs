@@ -62,6 +62,11 @@ fn apply_camera(keys: &CameraKeys, camera: &mut Camera) {
 fn apply_shading(keys: &ShadingKeys, shading: &mut ShadingSettings) {
     put(&mut shading.model, keys.model);
     put(&mut shading.bent_normals, keys.bent_normals);
+    put(&mut shading.filter, keys.filter);
+    put(
+        &mut shading.specular_antialiasing,
+        keys.specular_antialiasing,
+    );
     put(&mut shading.shadows, keys.shadows);
     put(&mut shading.max_bounces, keys.max_bounces);
     put(&mut shading.background, keys.background);

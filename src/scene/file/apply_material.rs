@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::apply::put;
-use super::document::{MapKeys, MaterialKeys, Which};
+use super::document::{MapKeys, MaterialKeys, Placed, Which};
 use super::fault::{Fault, Read, nearest};
 use super::parse_material::simple_key;
 use super::pictures::Pictures;
@@ -149,7 +149,7 @@ fn apply_entry(
     }
     // Last, so that it also holds for the maps just named.
     put(&mut material.default_amplitude, keys.default_amplitude);
-    apply_normal_keys(keys, material, doubts);
+    apply_slot_keys(keys, material, doubts);
     Ok(())
 }
 
@@ -172,34 +172,60 @@ fn set_simple_map(material: &mut Material, role: MapRole, image: Option<usize>) 
     }
 }
 
-fn apply_normal_keys(keys: &MaterialKeys, material: &mut Material, doubts: &mut Vec<Fault>) {
-    let holds_slopes = |slot: &&mut MapSlot| matches!(slot.role, MapRole::Normal | MapRole::Slope);
-    let mut found = false;
-    for slot in material.maps.iter_mut().filter(holds_slopes) {
-        found = true;
-        put(
-            &mut slot.flip_green,
-            keys.normal_down.as_ref().map(|p| p.value),
-        );
-        put(
-            &mut slot.baked_amplitude,
-            keys.normal_amplitude.as_ref().map(|p| p.value),
-        );
-    }
-    // For "*", some of the materials may well have no such map.
-    if found || keys.which.value == Which::Every {
-        return;
-    }
-    let places = [
-        keys.normal_down.as_ref().map(|p| (p.at, &p.key)),
-        keys.normal_amplitude.as_ref().map(|p| (p.at, &p.key)),
-    ];
-    for (at, key) in places.into_iter().flatten() {
+/// Short forms for what stands in the material's slots.
+fn apply_slot_keys(keys: &MaterialKeys, material: &mut Material, doubts: &mut Vec<Fault>) {
+    let down = keys.normal_down.as_ref();
+    let mut short = ShortForms {
+        keys,
+        material,
+        doubts,
+    };
+    let slopes = (
+        [MapRole::Normal, MapRole::Slope].as_slice(),
+        "normal or slope",
+    );
+    short.put(down, slopes, |slot| &mut slot.flip_green);
+    let amplitude = keys.normal_amplitude.as_ref();
+    short.put(amplitude, slopes, |slot| &mut slot.baked_amplitude);
+    let normals = ([MapRole::Normal].as_slice(), "normal");
+    short.put(keys.normal_space.as_ref(), normals, |slot| &mut slot.space);
+    let heights = ([MapRole::Height].as_slice(), "height");
+    short.put(keys.destair.as_ref(), heights, |slot| &mut slot.destair);
+}
+
+/// Keys of a material that mean its maps of some roles.
+struct ShortForms<'a> {
+    keys: &'a MaterialKeys,
+    material: &'a mut Material,
+    doubts: &'a mut Vec<Fault>,
+}
+
+impl ShortForms<'_> {
+    /// Sets a field of all slots with one of the roles. It is doubtful if there are none.
+    fn put<T: Copy>(
+        &mut self,
+        key: Option<&Placed<T>>,
+        (roles, what): (&[MapRole], &str),
+        field: impl Fn(&mut MapSlot) -> &mut T,
+    ) {
+        let Some(key) = key else {
+            return;
+        };
+        let mut found = false;
+        let slots = self.material.maps.iter_mut();
+        for slot in slots.filter(|slot| roles.contains(&slot.role)) {
+            found = true;
+            *field(slot) = key.value;
+        }
+        // For "*", some of the materials may well have no such map.
+        if found || self.keys.which.value == Which::Every {
+            return;
+        }
         let message = format!(
-            "`{key}` changes nothing: material \"{}\" has no normal or slope map",
-            material.name
+            "`{}` changes nothing: material \"{}\" has no {what} map",
+            key.key, self.material.name
         );
-        doubts.push(Fault::new(at, message));
+        self.doubts.push(Fault::new(key.at, message));
     }
 }
 
@@ -209,6 +235,8 @@ fn slot(keys: &MapKeys, pictures: &mut Pictures) -> Read<MapSlot> {
     put(&mut slot.channel, keys.channel);
     put(&mut slot.invert, keys.invert);
     put(&mut slot.flip_green, keys.flip_green);
+    put(&mut slot.space, keys.space);
+    put(&mut slot.destair, keys.destair);
     put(&mut slot.flip_v, keys.flip_v);
     put(&mut slot.wrap, keys.wrap);
     put(&mut slot.uv_scale, keys.uv_scale);

@@ -4,10 +4,10 @@ use glam::DVec3;
 
 use crate::geometry::{Kernel, OffsetRule};
 use crate::math::LinearRgb;
-use crate::scene::{Background, BentNormals, ShadingModel, View};
+use crate::scene::{Background, BentNormals, ShadingModel, TextureFilter, View};
 use crate::shading::Light;
 use crate::surface::mapping::{Derivative, Lookup, Method};
-use crate::texture::{Channel, MapRole, Wrap};
+use crate::texture::{Channel, MapRole, NormalSpace, Wrap};
 
 /// A value and the byte offset of its key, for faults that show only once the model is known.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,6 +90,10 @@ pub(super) struct ShadingKeys {
     pub model: Option<ShadingModel>,
     /// `bent_normals`.
     pub bent_normals: Option<BentNormals>,
+    /// `filter`.
+    pub filter: Option<TextureFilter>,
+    /// `specular_antialiasing`.
+    pub specular_antialiasing: Option<bool>,
     /// `shadows`.
     pub shadows: Option<bool>,
     /// `max_bounces`.
@@ -169,6 +173,10 @@ pub(super) struct MaterialKeys {
     pub simple_maps: Vec<(MapRole, Placed<String>)>,
     /// `normal_y`: whether green grows downwards.
     pub normal_down: Option<Placed<bool>>,
+    /// `normal_space`.
+    pub normal_space: Option<Placed<NormalSpace>>,
+    /// `destair`.
+    pub destair: Option<Placed<bool>>,
     /// `normal_amplitude`, world units.
     pub normal_amplitude: Option<Placed<OrDefault<f64>>>,
 }
@@ -188,6 +196,10 @@ pub(super) struct MapKeys {
     pub invert: Option<bool>,
     /// `flip_green`.
     pub flip_green: Option<bool>,
+    /// `space`.
+    pub space: Option<NormalSpace>,
+    /// `destair`.
+    pub destair: Option<bool>,
     /// `flip_v`.
     pub flip_v: Option<bool>,
     /// `wrap`.

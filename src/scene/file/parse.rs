@@ -10,7 +10,7 @@ use super::parse_light::lights;
 use super::parse_material::materials;
 use super::section::{Item, Limits, Section};
 use crate::geometry::{Kernel, OffsetRule};
-use crate::scene::{Background, BentNormals, ShadingModel, View};
+use crate::scene::{Background, BentNormals, ShadingModel, TextureFilter, View};
 use crate::surface::mapping::{Derivative, Lookup, MappingSettings, Method, SearchSettings};
 
 /// Most columns or rows of a picture.
@@ -154,6 +154,10 @@ fn shading(root: &mut Section<'_>) -> Read<ShadingKeys> {
         bent_normals: table.read("bent_normals", |x| {
             x.choice(&BentNormals::ALL, BentNormals::name)
         })?,
+        filter: table.read("filter", |x| {
+            x.choice(&TextureFilter::ALL, TextureFilter::name)
+        })?,
+        specular_antialiasing: table.read("specular_antialiasing", Item::boolean)?,
         shadows: table.read("shadows", Item::boolean)?,
         max_bounces: table.read("max_bounces", |x| x.integer(0, MAX_BOUNCES))?,
         background: table.read("background", background)?,

@@ -4,7 +4,7 @@ use super::document::{MapKeys, MaterialKeys, Placed, Which};
 use super::fault::Read;
 use super::parse::{amplitude, or_default, placed};
 use super::section::{Item, Limits, Section};
-use crate::texture::{Channel, MapRole, Wrap};
+use crate::texture::{Channel, MapRole, NormalSpace, Wrap};
 
 /// The key that gives a material its one map in a role.
 pub(super) const fn simple_key(role: MapRole) -> &'static str {
@@ -45,6 +45,10 @@ fn material(mut table: Section<'_>) -> Read<MaterialKeys> {
             .transpose()?,
         simple_maps,
         normal_down: table.read("normal_y", normal_down)?,
+        normal_space: table.read("normal_space", |x| {
+            Ok(placed(x, x.choice(&NormalSpace::ALL, NormalSpace::name)?))
+        })?,
+        destair: table.read("destair", |x| Ok(placed(x, x.boolean()?)))?,
         normal_amplitude: table.read("normal_amplitude", |x| Ok(placed(x, baked_amplitude(x)?)))?,
     };
     table.finish()?;
@@ -97,6 +101,8 @@ fn map(mut table: Section<'_>) -> Read<MapKeys> {
         channel: table.read("channel", |x| x.choice(&Channel::ALL, Channel::name))?,
         invert: table.read("invert", Item::boolean)?,
         flip_green: table.read("flip_green", Item::boolean)?,
+        space: table.read("space", |x| x.choice(&NormalSpace::ALL, NormalSpace::name))?,
+        destair: table.read("destair", Item::boolean)?,
         flip_v: table.read("flip_v", Item::boolean)?,
         wrap: table.read("wrap", |x| x.choice(&Wrap::ALL, Wrap::name))?,
         uv_scale: table.read("uv_scale", pair)?,

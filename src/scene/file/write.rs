@@ -173,6 +173,8 @@ fn shading(text: &mut Text, view: &SceneView<'_>) -> Result<(), SaveError> {
     text.table("shading");
     text.string("model", shading.model.name());
     text.string("bent_normals", shading.bent_normals.name());
+    text.string("filter", shading.filter.name());
+    text.raw("specular_antialiasing", shading.specular_antialiasing);
     text.raw("shadows", shading.shadows);
     text.raw("max_bounces", shading.max_bounces);
     let Background { top, bottom } = shading.background;

@@ -66,6 +66,12 @@ fn map(
     if slot.flip_green != plain.flip_green {
         text.raw("flip_green", slot.flip_green);
     }
+    if slot.space != plain.space {
+        text.string("space", slot.space.name());
+    }
+    if slot.destair != plain.destair {
+        text.raw("destair", slot.destair);
+    }
     if slot.flip_v != plain.flip_v {
         text.raw("flip_v", slot.flip_v);
     }

@@ -3,8 +3,9 @@
 use super::relief::{
     Found, Layers, Refinement, ReliefField, cone_steps, exact, iterate, march, most_steps,
 };
-use super::{BoundHeight, BoundNormal, Derivative, Lookup, MappingSettings, Method};
-use crate::math::{Real, V2, V3, gamma};
+use super::tilt::Tilt;
+use super::{BoundHeight, BoundNormal, Lookup, MappingSettings, Method};
+use crate::math::{Real, V2, gamma};
 use crate::surface::SurfaceInteraction;
 use crate::texture::{ConeMap, HeightPyramid};
 
@@ -45,16 +46,6 @@ enum Search<'a> {
     Exact(ReliefField<'a>),
 }
 
-/// How the normal tilts.
-#[derive(Debug, Clone, Copy)]
-enum Tilt<'a> {
-    Keep,
-    Analytic(BoundHeight<'a>),
-    Central(BoundHeight<'a>),
-    Normal(BoundNormal<'a>),
-    Slope(BoundNormal<'a>),
-}
-
 /// What one material does at every point: chosen once, then run over a tile's points without asking
 /// again.
 #[derive(Debug, Clone, Copy)]
@@ -83,11 +74,8 @@ impl<'a> MaterialMapping<'a> {
         let normal = maps.normal.filter(bent);
         let slope = maps.slope.filter(bent);
 
-        let bump = tilting_height.map_or(Tilt::Keep, |h| match settings.derivative {
-            Derivative::Analytic => Tilt::Analytic(h),
-            Derivative::Central => Tilt::Central(h),
-        });
-        let normal = normal.map_or(Tilt::Keep, Tilt::Normal);
+        let bump = tilting_height.map_or(Tilt::Keep, |h| Tilt::bump(h, settings.derivative));
+        let by_normals = normal.map_or(Tilt::Keep, Tilt::normal);
         let tilted = |tilt| Self { tilt, ..Self::NONE };
         match settings.method {
             // Displacement is geometry: what is left to do here is nothing.
@@ -97,13 +85,13 @@ impl<'a> MaterialMapping<'a> {
                 let central = || tilting_height.map_or(Tilt::Keep, Tilt::Central);
                 tilted(slope.map_or_else(central, Tilt::Slope))
             }
-            Method::Normal => tilted(normal),
+            Method::Normal => tilted(by_normals),
             method => {
                 let shift = height
                     .filter(|_| settings.use_parallax)
                     .and_then(|h| Shift::choose(method, settings, h, maps));
-                let tilt = match (settings.lookup, normal) {
-                    (Lookup::Normal, Tilt::Normal(_)) => normal,
+                let tilt = match settings.lookup {
+                    Lookup::Normal if normal.is_some() => by_normals,
                     _ => bump,
                 };
                 let self_shadow = match (shift, height, maps.pyramid) {
@@ -170,6 +158,13 @@ impl<'a> MaterialMapping<'a> {
         !matches!(self.shift, Shift::Stay)
     }
 
+    /// Whether normals are told in the frame that MikkTSpace makes, so that points need a
+    /// [`BakedFrame`](crate::surface::BakedFrame).
+    #[must_use]
+    pub const fn needs_baked_frame(&self) -> bool {
+        matches!(self.tilt, Tilt::Baked(_))
+    }
+
     /// Bilinear look-ups that one point costs, beside the steps of a search.
     #[must_use]
     pub const fn fetches_per_point(&self) -> u64 {
@@ -177,12 +172,7 @@ impl<'a> MaterialMapping<'a> {
             Shift::Stay | Shift::Search(_) => 0,
             Shift::Parallax(_) | Shift::Limited(_) => 1,
         };
-        let tilt = match self.tilt {
-            Tilt::Keep => 0,
-            Tilt::Analytic(_) | Tilt::Normal(_) | Tilt::Slope(_) => 1,
-            Tilt::Central(_) => 4,
-        };
-        shift + tilt
+        shift + self.tilt.fetches()
     }
 
     /// Moves the texture coordinate and tilts `n_shade` of a point, or of one in each lane. It must have
@@ -199,25 +189,22 @@ impl<'a> MaterialMapping<'a> {
                 move_to(s, &found);
             }
         }
-        self.tilt(s);
+        self.tilt.apply(s);
+    }
+
+    /// How much the slopes of the relief differ over the footprint of a point that maps were applied to: the
+    /// variance, the mean of both axes. 0 for maps that are read at points.
+    #[inline(always)]
+    #[must_use]
+    pub fn slope_variance<F: Real>(&self, s: &SurfaceInteraction<F>) -> F {
+        self.tilt.slope_variance(s)
     }
 
     /// [`Self::apply`] where the search is over already.
     #[inline(always)]
     pub fn apply_found<F: Real>(&self, s: &mut SurfaceInteraction<F>, found: &Found<F>) {
         move_to(s, found);
-        self.tilt(s);
-    }
-
-    #[inline(always)]
-    fn tilt<F: Real>(&self, s: &mut SurfaceInteraction<F>) {
-        match &self.tilt {
-            Tilt::Keep => {}
-            Tilt::Analytic(h) => s.n_shade = bumped(s, h.analytic_slope(s.uv)),
-            Tilt::Central(h) => s.n_shade = bumped(s, h.central_slope(s.uv)),
-            Tilt::Normal(n) => s.n_shade = normal_mapped(n, s),
-            Tilt::Slope(n) => s.n_shade = slope_mapped(n, s),
-        }
+        self.tilt.apply(s);
     }
 }
 
@@ -298,7 +285,7 @@ fn move_to<F: Real>(s: &mut SurfaceInteraction<F>, found: &Found<F>) {
 pub fn parallax<F: Real>(height: &BoundHeight<'_>, s: &SurfaceInteraction<F>) -> V2<F> {
     let cos = s.wo.dot(s.n_shade);
     let above = cos.gt(cos.splat(MIN_PARALLAX_COS));
-    moved(s, above, height.displacement(s.uv) / cos)
+    moved(s, above, height.displacement_over(s.uv, s.footprint) / cos)
 }
 
 /// Parallax with offset limiting (report 2.18, Welsh 2004): without the division the shift is at most
@@ -309,51 +296,15 @@ pub fn parallax<F: Real>(height: &BoundHeight<'_>, s: &SurfaceInteraction<F>) ->
 #[must_use]
 pub fn parallax_limited<F: Real>(height: &BoundHeight<'_>, s: &SurfaceInteraction<F>) -> V2<F> {
     let cos = s.wo.dot(s.n_shade);
-    moved(s, cos.gt(cos.splat(0.0)), height.displacement(s.uv))
+    moved(
+        s,
+        cos.gt(cos.splat(0.0)),
+        height.displacement_over(s.uv, s.footprint),
+    )
 }
 
 #[inline(always)]
 fn moved<F: Real>(s: &SurfaceInteraction<F>, above: F::Mask, along_view: F) -> V2<F> {
     let uv = s.uv + V2::new(s.wo.dot(s.grad_u), s.wo.dot(s.grad_v)) * along_view;
     V2::select(above & uv.is_finite(), uv, s.uv)
-}
-
-/// `N' = normalize(N − d_u ∇u − d_v ∇v)` for a displacement with these derivatives by u and v.
-///
-/// Source: Blinn 1978 in the surface-gradient form of Mikkelsen 2010; report 2.16 in physical units.
-#[inline(always)]
-#[must_use]
-pub fn bumped<F: Real>(s: &SurfaceInteraction<F>, slope: V2<F>) -> V3<F> {
-    (s.n_shade - s.grad_u * slope.x - s.grad_v * slope.y).normalize_or(s.n_shade)
-}
-
-/// `N' = normalize(m_z N + k (m_x T + m_y B))`: a tangent-space normal `m` with its slopes scaled by k.
-///
-/// T follows +u on the triangle, made perpendicular to the smooth normal; B completes the frame on the
-/// side of +v. Where the texture has no area the normal stays.
-#[inline(always)]
-#[must_use]
-pub fn normal_mapped<F: Real>(map: &BoundNormal<'_>, s: &SurfaceInteraction<F>) -> V3<F> {
-    tilted(s, map.stored(s.uv), map.strength)
-}
-
-/// `N' = normalize(N − k (h_x T + h_y B))` with slopes from red and green (report 2.4.2 and 2.16).
-#[inline(always)]
-#[must_use]
-pub fn slope_mapped<F: Real>(map: &BoundNormal<'_>, s: &SurfaceInteraction<F>) -> V3<F> {
-    let stored = map.stored(s.uv);
-    let up = stored.z.splat(1.0);
-    tilted(s, V3::new(-stored.x, -stored.y, up), map.strength)
-}
-
-#[inline(always)]
-fn tilted<F: Real>(s: &SurfaceInteraction<F>, m: V3<F>, strength: f32) -> V3<F> {
-    let n = s.n_shade;
-    let zero = s.handedness.splat(0.0);
-    let none = V3::new(zero, zero, zero);
-    let tangent = (s.dp_du - n * n.dot(s.dp_du)).normalize_or(none);
-    let bitangent = n.cross(tangent) * s.handedness;
-    let tilted = n * m.z + (tangent * m.x + bitangent * m.y) * zero.splat(strength);
-    let has_frame = tangent.dot(tangent).gt(zero) & !s.handedness.eq(zero);
-    V3::select(has_frame, tilted.normalize_or(n), n)
 }

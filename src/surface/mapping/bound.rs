@@ -3,7 +3,9 @@
 use glam::Vec2;
 
 use crate::math::{Real, V2, V3};
-use crate::texture::{Addressing, HeightMap, NormalMap, Wrap};
+use crate::texture::{
+    Addressing, HeightMap, Look, Mips, NormalMap, NormalSpace, SlopeMoments, Wrap,
+};
 
 /// A height map with its amplitude: `displacement = stored · scale + offset`, internal units along the
 /// normal.
@@ -22,6 +24,10 @@ pub struct BoundHeight<'a> {
     pub offset: f32,
     /// Smallest and largest stored height.
     pub stored: [f32; 2],
+    /// For means over what the ray's cone covers; `None` reads the map at points. Searches do so anyway.
+    pub mips: Option<Mips<'a, HeightMap>>,
+    /// How much slopes differ there; `None` where nobody asks.
+    pub moments: Option<Mips<'a, SlopeMoments>>,
 }
 
 impl<'a> BoundHeight<'a> {
@@ -34,6 +40,8 @@ impl<'a> BoundHeight<'a> {
             scale,
             offset,
             stored: map.extremes(),
+            mips: None,
+            moments: None,
         }
     }
 }
@@ -73,22 +81,139 @@ impl BoundHeight<'_> {
         self.map.sample(st, self.addressing.wrap) * self.scale + self.offset
     }
 
-    /// Derivatives of the displacement by u and v: exact for the bilinear height.
+    /// The same as its mean over the footprint of a point.
     #[inline(always)]
     #[must_use]
-    pub fn analytic_slope<F: Real>(&self, uv: V2<F>) -> V2<F> {
-        let st = self.addressing.st(uv);
-        let found = self.map.sample_slope(st, self.addressing.wrap);
-        found.slope_st.times(self.addressing.scale * self.scale)
+    pub fn displacement_over<F: Real>(&self, uv: V2<F>, footprint: F) -> F {
+        let [height] = self.look(footprint, &HeightAt(self.place(uv)));
+        height * self.scale + self.offset
+    }
+
+    /// Derivatives of the displacement by u and v, the mean over the footprint of a point: exact for the bilinear
+    /// height.
+    #[inline(always)]
+    #[must_use]
+    pub fn analytic_slope<F: Real>(&self, uv: V2<F>, footprint: F) -> V2<F> {
+        let [s, t] = self.look(footprint, &AnalyticAt(self.place(uv)));
+        V2::new(s, t).times(self.addressing.scale * self.scale)
     }
 
     /// The same by the report's central differences (2.15).
     #[inline(always)]
     #[must_use]
-    pub fn central_slope<F: Real>(&self, uv: V2<F>) -> V2<F> {
-        let st = self.addressing.st(uv);
-        let slope = self.map.central_slope(st, self.addressing.wrap);
-        slope.times(self.addressing.scale * self.scale)
+    pub fn central_slope<F: Real>(&self, uv: V2<F>, footprint: F) -> V2<F> {
+        let [s, t] = self.look(footprint, &CentralAt(self.place(uv)));
+        V2::new(s, t).times(self.addressing.scale * self.scale)
+    }
+
+    /// Variance of the relief's slopes over the footprint of a point, the mean of both axes: pure numbers.
+    /// `grads` are the gradients of u and v.
+    #[inline(always)]
+    #[must_use]
+    pub fn slope_variance<F: Real>(&self, uv: V2<F>, footprint: F, grads: [V3<F>; 2]) -> F {
+        let Some(moments) = &self.moments else {
+            return footprint.splat(0.0);
+        };
+        let [a, b, ab] = moments.look_beyond(footprint, &VariancesAt(self.place(uv)));
+        // The tilt is −(a ∇s + b ∇t) with the gradients of the place on the picture.
+        let per_s = grads[0] * a.splat(self.addressing.scale.x * self.scale);
+        let per_t = grads[1] * a.splat(self.addressing.scale.y * self.scale);
+        let both = a * per_s.dot(per_s) + b * per_t.dot(per_t) + ab * per_s.dot(per_t) * 2.0;
+        (both * 0.5).larger(a.splat(0.0))
+    }
+
+    #[inline(always)]
+    fn place<F: Real>(&self, uv: V2<F>) -> Place<F> {
+        (self.addressing.st(uv), self.addressing.wrap)
+    }
+
+    #[inline(always)]
+    fn look<F: Real, const N: usize>(
+        &self,
+        footprint: F,
+        look: &impl Look<F, N, Map = HeightMap>,
+    ) -> [F; N] {
+        Mips::look(self.map, self.mips.as_ref(), footprint, look)
+    }
+}
+
+/// A place on a picture, and what goes on beyond its border.
+type Place<F> = (V2<F>, Wrap);
+
+/// Stored heights.
+struct HeightAt<F: Real>(Place<F>);
+
+impl<F: Real> Look<F, 1> for HeightAt<F> {
+    type Map = HeightMap;
+    #[inline(always)]
+    fn at(&self, map: &HeightMap) -> [F; 1] {
+        let (st, wrap) = self.0;
+        [map.sample(st, wrap)]
+    }
+}
+
+/// Derivatives of the bilinear height.
+struct AnalyticAt<F: Real>(Place<F>);
+
+impl<F: Real> Look<F, 2> for AnalyticAt<F> {
+    type Map = HeightMap;
+    #[inline(always)]
+    fn at(&self, map: &HeightMap) -> [F; 2] {
+        let (st, wrap) = self.0;
+        let slope = map.sample_slope(st, wrap).slope_st;
+        [slope.x, slope.y]
+    }
+}
+
+/// Central differences.
+struct CentralAt<F: Real>(Place<F>);
+
+impl<F: Real> Look<F, 2> for CentralAt<F> {
+    type Map = HeightMap;
+    #[inline(always)]
+    fn at(&self, map: &HeightMap) -> [F; 2] {
+        let (st, wrap) = self.0;
+        let slope = map.central_slope(st, wrap);
+        [slope.x, slope.y]
+    }
+}
+
+/// Variances and covariance of slopes.
+struct VariancesAt<F: Real>(Place<F>);
+
+impl<F: Real> Look<F, 3> for VariancesAt<F> {
+    type Map = SlopeMoments;
+    #[inline(always)]
+    fn at(&self, map: &SlopeMoments) -> [F; 3] {
+        let (st, wrap) = self.0;
+        map.variances(st, wrap)
+    }
+}
+
+/// How much of unit vectors their mean has lost: the variance of both axes together.
+struct LostAt<F: Real>(Place<F>);
+
+impl<F: Real> Look<F, 1> for LostAt<F> {
+    type Map = NormalMap;
+    #[inline(always)]
+    fn at(&self, map: &NormalMap) -> [F; 1] {
+        let (st, wrap) = self.0;
+        let mean = map.sample(st, wrap);
+        let one = mean.x.splat(1.0);
+        [(one - mean.dot(mean)).larger(one.splat(0.0))]
+    }
+}
+
+/// Stored vectors.
+struct VectorAt<F: Real>(Place<F>);
+
+impl<F: Real> Look<F, 3> for VectorAt<F> {
+    type Map = NormalMap;
+    #[inline(always)]
+    fn at(&self, map: &NormalMap) -> [F; 3] {
+        let (st, wrap) = self.0;
+        let V3 { x, y, z } = map.sample(st, wrap);
+        [x, y, z]
     }
 }
 
@@ -103,21 +228,87 @@ pub struct BoundNormal<'a> {
     pub strength: f32,
     /// Signs that turn stored x and y towards +u and +v: flipped green, flipped v and negative scales.
     pub signs: Vec2,
+    /// The directions that the map is told in.
+    pub space: NormalSpace,
+    /// For means over what the ray's cone covers; `None` reads the map at points.
+    pub mips: Option<Mips<'a, NormalMap>>,
+    /// Of slope maps, how much slopes differ there; of normal maps the means themselves tell.
+    pub moments: Option<Mips<'a, SlopeMoments>>,
+}
+
+impl<'a> BoundNormal<'a> {
+    /// A tangent-space map as it is.
+    #[must_use]
+    pub const fn new(map: &'a NormalMap, addressing: Addressing) -> Self {
+        Self {
+            map,
+            addressing,
+            strength: 1.0,
+            signs: Vec2::ONE,
+            space: NormalSpace::Tangent,
+            mips: None,
+            moments: None,
+        }
+    }
 }
 
 impl BoundNormal<'_> {
-    /// Stored vector at `uv`, x along +u and y along +v, before `strength`.
+    /// Stored vector at `uv`, the mean over the footprint of a point; x along +u and y along +v, before
+    /// `strength`.
     #[inline(always)]
     #[must_use]
-    pub fn stored<F: Real>(&self, uv: V2<F>) -> V3<F> {
+    pub fn stored<F: Real>(&self, uv: V2<F>, footprint: F) -> V3<F> {
         let st = self.addressing.st(uv);
-        let m = self.map.sample(st, self.addressing.wrap);
-        let (x, y) = (m.x * self.signs.x, m.y * self.signs.y);
+        let V3 { x, y, z } = self.signed(st, footprint);
         if self.addressing.wrap == Wrap::Mirror {
-            V3::new(unmirrored(x, st.x), unmirrored(y, st.y), m.z)
+            V3::new(unmirrored(x, st.x), unmirrored(y, st.y), z)
         } else {
-            V3::new(x, y, m.z)
+            V3::new(x, y, z)
         }
+    }
+
+    /// The same in the axes of the model's file. Turned-over and mirrored copies of a picture say the same
+    /// there.
+    #[inline(always)]
+    #[must_use]
+    pub fn stored_in_object<F: Real>(&self, uv: V2<F>, footprint: F) -> V3<F> {
+        self.signed(self.addressing.st(uv), footprint)
+    }
+
+    /// Variance of a slope map's slopes over the footprint of a point, the mean of both axes.
+    #[inline(always)]
+    #[must_use]
+    pub fn slope_variance<F: Real>(&self, uv: V2<F>, footprint: F) -> F {
+        let place = (self.addressing.st(uv), self.addressing.wrap);
+        let both = self
+            .moments
+            .as_ref()
+            .map_or(footprint.splat(0.0), |moments| {
+                let [a, b, _] = moments.look_beyond(footprint, &VariancesAt(place));
+                a + b
+            });
+        both * (0.5 * self.strength * self.strength)
+    }
+
+    /// The same for a normal map: what the mean of unit vectors lacks of a unit.
+    ///
+    /// Source: Toksvig 2005, "Mipmapping Normal Maps".
+    #[inline(always)]
+    #[must_use]
+    pub fn normal_variance<F: Real>(&self, uv: V2<F>, footprint: F) -> F {
+        let place = (self.addressing.st(uv), self.addressing.wrap);
+        let both = self.mips.as_ref().map_or(footprint.splat(0.0), |mips| {
+            let [lost] = mips.look_beyond(footprint, &LostAt(place));
+            lost
+        });
+        both * (0.5 * self.strength * self.strength)
+    }
+
+    #[inline(always)]
+    fn signed<F: Real>(&self, st: V2<F>, footprint: F) -> V3<F> {
+        let look = VectorAt((st, self.addressing.wrap));
+        let [x, y, z] = Mips::look(self.map, self.mips.as_ref(), footprint, &look);
+        V3::new(x * self.signs.x, y * self.signs.y, z)
     }
 }
 

@@ -8,10 +8,10 @@ mod bound;
 mod method;
 pub mod relief;
 mod settings;
+mod tilt;
 
-pub use apply::{
-    MaterialMapping, MaterialMaps, bumped, normal_mapped, parallax, parallax_limited, slope_mapped,
-};
+pub use apply::{MaterialMapping, MaterialMaps, parallax, parallax_limited};
 pub use bound::{BoundHeight, BoundNormal};
 pub use method::{ErrorClass, Method, MethodInfo, MethodReads};
 pub use settings::{Derivative, Lookup, MappingSettings, SearchSettings};
+pub use tilt::{baked_normal_mapped, bumped, normal_mapped, object_normal_mapped, slope_mapped};

@@ -38,18 +38,23 @@ pub(super) fn cost_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
     let displaced = scene.displaced.last();
     let bytes = [
         ("Mesh", scene.mesh.bytes()),
+        ("Tangents", scene.tangents.bytes()),
         ("Tree", scene.bvh.bytes()),
         (
             "Pictures and maps",
             scene
                 .images
                 .iter()
-                .map(|i| i.bytes() - i.search_bytes())
+                .map(|i| i.bytes() - i.search_bytes() - i.filter_bytes())
                 .sum(),
         ),
         (
             "Pyramids and cones",
             scene.images.iter().map(|i| i.search_bytes()).sum(),
+        ),
+        (
+            "Mip maps",
+            scene.images.iter().map(|i| i.filter_bytes()).sum(),
         ),
         ("Displacement", displaced.map_or(0, |d| d.bytes())),
         ("Parts of it kept", stats.kept_bytes),

@@ -7,7 +7,7 @@ use egui::{CollapsingHeader, RichText, Ui};
 use super::{Action, PanelContext};
 use crate::scene::Scene;
 use crate::shading::Material;
-use crate::texture::{Channel, MapRole, MapSlot, Wrap};
+use crate::texture::{Channel, MapRole, MapSlot, NormalSpace, Wrap};
 use crate::viewer::dialogs::Purpose;
 use crate::viewer::theme;
 use crate::viewer::widgets::{
@@ -143,6 +143,15 @@ impl SlotEditor<'_> {
             MapRole::name,
         );
         self.switches_ui(ui);
+        if self.slot.role == MapRole::Normal {
+            let label = self.label("space");
+            let all = NormalSpace::ALL;
+            let caption = Caption::named("Space", &label);
+            choice_ui(ui, caption, &mut self.slot.space, &all, NormalSpace::name);
+        }
+        if self.slot.role == MapRole::Height {
+            self.stairs_ui(ui, scene);
+        }
         CollapsingHeader::new(self.label("addressing")).show(ui, |ui| self.addressing_ui(ui));
         action
     }
@@ -218,6 +227,33 @@ impl SlotEditor<'_> {
             if self.slot.baked_amplitude.is_some_and(|b| b != baked) {
                 self.slot.baked_amplitude = Some(baked);
             }
+        }
+    }
+
+    /// How finely the heights are told, and the filter for maps that show it.
+    fn stairs_ui(&mut self, ui: &mut Ui, scene: &Scene) {
+        let Some(image) = scene.images.get(self.slot.image) else {
+            return;
+        };
+        let levels = image.heights(self.slot.channel).levels();
+        if levels.is_few() {
+            let said = format!("Your map has {} levels", levels.count);
+            let notice = RichText::new(said).small().color(theme::WEAK);
+            ui.add(egui::Label::new(notice).wrap())
+                .on_hover_text("Gentle slopes show their steps in highlights; 16 bits do not");
+        }
+        // Whoever switched it on can switch it off, whatever the picture is now.
+        if levels.is_few() || self.slot.destair {
+            let name = self.label("de-stair");
+            row_ui(ui, Caption::new(""), |ui| {
+                let response = ui.checkbox(&mut self.slot.destair, "de-stair (alters the data)");
+                let on = self.slot.destair;
+                response.widget_info(|| {
+                    egui::WidgetInfo::selected(egui::Role::CheckBox, true, on, &name)
+                });
+                response
+                    .on_hover_text("Smooths the steps; no height moves by more than half a level");
+            });
         }
     }
 

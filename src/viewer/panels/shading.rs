@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use super::PanelContext;
-use crate::scene::{BentNormals, ShadingModel};
+use crate::scene::{BentNormals, ShadingModel, TextureFilter};
 use crate::viewer::widgets::{Caption, Number, choice_ui, color_ui, number_ui};
 
 pub(super) fn shading_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
@@ -25,6 +25,20 @@ pub(super) fn shading_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
         &BentNormals::ALL,
         BentNormals::name,
     );
+    let caption = Caption::named("Maps", "Texture filter");
+    choice_ui(
+        ui,
+        caption,
+        &mut shading.filter,
+        &TextureFilter::ALL,
+        TextureFilter::name,
+    );
+    ui.add_enabled_ui(shading.filter == TextureFilter::Mip, |ui| {
+        ui.checkbox(&mut shading.specular_antialiasing, "Specular antialiasing")
+            .on_hover_text(
+                "Highlights widen where a pixel covers slopes that differ; needs mip maps",
+            );
+    });
     ui.checkbox(&mut shading.shadows, "Shadows");
     number_ui(
         ui,

@@ -160,10 +160,11 @@ fn a_slope_map_is_the_reports_normal() {
             .normalize();
         let maps = MaterialMaps {
             slope: Some(BoundNormal {
-                map: &map,
-                addressing: Addressing::from_slot(&MapSlot::new(0, MapRole::Slope)),
                 strength: strength as f32,
-                signs: Vec2::ONE,
+                ..BoundNormal::new(
+                    &map,
+                    Addressing::from_slot(&MapSlot::new(0, MapRole::Slope)),
+                )
             }),
             ..MaterialMaps::default()
         };

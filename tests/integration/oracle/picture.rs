@@ -78,6 +78,7 @@ fn rendered(corners: [DVec3; 3], settings: &RenderSettings) -> Picture {
     let mesh = one_triangle(corners, [DVec2::ZERO; 3]);
     let scene = Scene {
         displaced: Default::default(),
+        tangents: Default::default(),
         name: "one triangle".to_owned(),
         source: SceneSource::BuiltIn("one triangle".to_owned()),
         bvh: Bvh::build(&mesh),

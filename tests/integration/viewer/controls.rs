@@ -2,10 +2,10 @@
 
 use egui::accesskit::Role;
 use glam::DVec3;
-use reliefscope::scene::ShadingModel;
+use reliefscope::scene::{ShadingModel, TextureFilter};
 use reliefscope::shading::{Falloff, LightKind};
 use reliefscope::surface::mapping::{Derivative, Lookup, Method};
-use reliefscope::texture::{Channel, MapRole, Wrap};
+use reliefscope::texture::{Channel, MapRole, NormalSpace, Wrap};
 
 use super::driver::Driver;
 
@@ -156,6 +156,7 @@ fn the_map_slots() {
     driver.check(&label(height, "flip V"));
     driver.choose(&label(height, "channel"), "g");
     driver.check(&label(normal, "flip green"));
+    driver.choose(&label(normal, "space"), "mikktspace");
     driver.number(&label(normal, "baked amplitude"), 0.5);
     driver.section(&label(height, "addressing"));
     driver.choose(&label(height, "wrap"), "clamp");
@@ -170,6 +171,7 @@ fn the_map_slots() {
     assert_eq!((slot.uv_scale, slot.uv_offset), ([3.0, 1.0], [0.0, 0.5]));
     assert_eq!((slot.gain, slot.bias), (0.5, 0.25));
     assert!(maps[normal].flip_green);
+    assert_eq!(maps[normal].space, NormalSpace::MikkTSpace);
     assert_eq!(maps[normal].baked_amplitude, Some(0.5));
     driver.check(&label(height, "on"));
     assert!(!driver.settings().materials[0].maps[height].enabled);
@@ -183,10 +185,34 @@ fn the_map_slots() {
     assert_eq!(driver.settings().materials[0].maps.len(), maps.len() - 1);
 }
 
+/// The reference's albedo has 8 bits: read as heights it tells its levels and offers the filter; its 16-bit
+/// height map does neither.
+#[test]
+fn few_levels_are_told() {
+    let mut driver = with_section("Materials");
+    let maps = driver.settings().materials[0].maps.clone();
+    let slot_of = |role| maps.iter().position(|s| s.role == role).expect("a slot");
+    let label = |role, what: &str| format!("Map {} {what}", slot_of(role) + 1);
+    assert!(!driver.has(&label(MapRole::Height, "de-stair")));
+    driver.choose(&label(MapRole::Albedo, "as"), "height");
+    driver.choose(&label(MapRole::Albedo, "channel"), "r");
+    driver.settle();
+    let image = &driver.doc().scene.images[maps[slot_of(MapRole::Albedo)].image];
+    let levels = image.heights(Channel::R).levels().count;
+    assert!(driver.has(&format!("Your map has {levels} levels")));
+    driver.check(&label(MapRole::Albedo, "de-stair"));
+    assert!(driver.settings().materials[0].maps[slot_of(MapRole::Albedo)].destair);
+    driver.settle();
+}
+
 #[test]
 fn the_shading_section() {
     let mut driver = with_section("Shading");
     driver.choose("Shading model", "report");
+    driver.choose("Texture filter", "mip");
+    assert_eq!(driver.settings().shading.filter, TextureFilter::Mip);
+    driver.check("Specular antialiasing");
+    assert!(driver.settings().shading.specular_antialiasing);
     driver.check("Shadows");
     driver.number("Mirror bounces", 5.0);
     let shading = driver.settings().shading;
