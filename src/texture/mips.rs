@@ -43,24 +43,23 @@ impl<T> Mips<'_, T> {
         footprint: F,
         look: &L,
     ) -> [F; N] {
+        // Nothing of this may cost those who do not ask for it.
+        let Some(mips) = mips else {
+            return look.at(base);
+        };
         let (zero, one) = (footprint.splat(0.0), footprint.splat(1.0));
-        let (halved, level): (&[T], F) =
-            mips.map_or((&[], zero), |mips| (mips.halved, mips.level(footprint)));
+        let level = mips.level(footprint);
         let mut sum = [zero; N];
         // One loop for all levels: look-ups are long, and every place that calls one is compiled for each kind
         // of vector instructions.
-        for (i, map) in std::iter::once(base).chain(halved).enumerate() {
+        for (i, map) in std::iter::once(base).chain(mips.halved).enumerate() {
             let share = one - (level - i as f32).abs();
             let counts = share.gt(zero);
-            if !counts.any() {
-                continue;
-            }
-            let found = look.at(map);
-            if halved.is_empty() {
-                return found;
-            }
-            for n in 0..N {
-                sum[n] = F::select(counts, sum[n] + found[n] * share, sum[n]);
+            if counts.any() {
+                let found = look.at(map);
+                for n in 0..N {
+                    sum[n] = F::select(counts, sum[n] + found[n] * share, sum[n]);
+                }
             }
         }
         sum

@@ -1,12 +1,13 @@
 //! A displaced triangle cut into micro-triangles, none of which is stored.
 //!
 //! A triangle of `2^k` segments falls into sixteen of `2^(k−2)`, and so on down to four segments, whose
-//! sixteen micro-triangles are made on the spot. The boxes of sixteen parts are made when a ray first comes by, and
-//! kept as long as there is room: a part with heights in `[low, high]` lies in the hull of its corners at both.
+//! sixteen micro-triangles are made on the spot. The boxes of sixteen parts are made when a ray first comes by, those
+//! that it meets are narrowed to their own heights, and all are kept as long as there is room: a part with heights in
+//! `[low, high]` lies in the hull of its corners at both.
 
 use glam::{Vec2, Vec3};
 
-use super::nodes::{Boxes, NodeCache, PARTS, Row};
+use super::nodes::{Node, NodeCache, PARTS, Row};
 use super::trace::SurfaceHit;
 use super::{Displacement, Reliefs, seams};
 use crate::geometry::triangle::{Corners8, LANES, TriangleTest as _, Watertight};
@@ -106,6 +107,8 @@ struct Part {
     a: i32,
     b: i32,
     size: i32,
+    /// Displacements within; means nothing for those that are made into micro-triangles next.
+    range: [f32; 2],
     /// Where the ray enters its box.
     near: f32,
 }
@@ -172,45 +175,83 @@ impl<'a, 'm> Patch<'a, 'm> {
         [low as f32 - margin, high as f32 + margin]
     }
 
-    /// Boxes of the sixteenths of a part.
+    /// The sixteenths of a part in boxes that hold all heights of the whole part.
     #[inline(always)]
-    fn boxes<S: Simd>(&self, simd: S, door: Door<'_, '_>, part: &Part) -> Boxes {
-        let mut boxes = [[Row::splat(f32::INFINITY), Row::splat(f32::NEG_INFINITY)]; 3];
+    fn node<S: Simd>(&self, simd: S, door: Door<'_, '_>, part: &Part) -> Node {
         let quarter = part.size / 4;
+        let per_segment = 1.0 / (1 << self.cut.segments_log2) as f32;
+        let mut places = [Row::splat(0.0); 3];
         for (i, [a, b, s]) in CUT.into_iter().enumerate() {
-            let [a, b, s] = [part.a + a * quarter, part.b + b * quarter, s * quarter];
-            if s.abs() == 4 {
-                let points = self.leaf_points(simd, door, [a, b, s]);
-                for (axis, row) in points.iter().enumerate() {
-                    let [low, high] = extremes(&row.0);
-                    boxes[axis][0].0[i] = low;
-                    boxes[axis][1].0[i] = high;
+            places[0].0[i] = (part.a + a * quarter) as f32 * per_segment;
+            places[1].0[i] = (part.b + b * quarter) as f32 * per_segment;
+            places[2].0[i] = (s * quarter) as f32 * per_segment;
+        }
+        let margin = margin(door);
+        let [low, high] = part.range;
+        let mut boxes = [[Row::splat(0.0); 2]; 3];
+        for group in 0..PARTS / S::f32s::LEN {
+            let [a, b, s] = [0, 1, 2].map(|k| places[k].get(simd, group));
+            let one = a.splat(1.0);
+            for axis in 0..3 {
+                let (p, n) = (self.p.map(|p| p[axis]), self.n.map(|n| n[axis]));
+                let mut least = one.splat(f32::INFINITY);
+                let mut most = one.splat(f32::NEG_INFINITY);
+                for [w1, w2] in [[a, b], [a + s, b], [a, b + s]] {
+                    let w = [one - w1 - w2, w1, w2];
+                    let (p, n) = (sum(w, p), sum(w, n));
+                    let (x, y) = (p + n * low, p + n * high);
+                    least = least.smaller(x).smaller(y);
+                    most = most.larger(x).larger(y);
                 }
-                continue;
+                boxes[axis][0].set(group, least - margin);
+                boxes[axis][1].set(group, most + margin);
             }
-            let range = self.range_of(door.0, [a, b, s]);
-            let mut add = |axis: usize, x: f32| {
-                let [low, high]: &mut [Row; 2] = &mut boxes[axis];
-                low.0[i] = low.0[i].min(x);
-                high.0[i] = high.0[i].max(x);
-            };
-            let per_segment = 1.0 / (1 << self.cut.segments_log2) as f32;
+        }
+        Node {
+            boxes,
+            ranges: [low, high].map(Row::splat),
+            refined: 0,
+        }
+    }
+
+    /// Gives one of the sixteenths of a part the box of its own heights.
+    #[inline(always)]
+    fn refine<S: Simd>(&self, simd: S, door: Door<'_, '_>, part: &Part, i: usize, node: &mut Node) {
+        let quarter = part.size / 4;
+        let [a, b, s] = CUT[i].map(|x| x * quarter);
+        let [a, b, s] = [part.a + a, part.b + b, s];
+        if s.abs() == 4 {
+            let points = self.leaf_points(simd, door, [a, b, s]);
+            for (axis, row) in points.iter().enumerate() {
+                let [low, high] = extremes(&row.0);
+                node.boxes[axis][0].0[i] = low;
+                node.boxes[axis][1].0[i] = high;
+            }
+            return;
+        }
+        let [low, high] = self.range_of(door.0, [a, b, s]);
+        // Within those of the whole, so that what is met does not depend on what was refined before.
+        let range = [low.max(part.range[0]), high.min(part.range[1])];
+        for (row, d) in node.ranges.iter_mut().zip(range) {
+            row.0[i] = d;
+        }
+        let per_segment = 1.0 / (1 << self.cut.segments_log2) as f32;
+        let margin = margin(door);
+        for axis in 0..3 {
+            let (p, n) = (self.p.map(|p| p[axis]), self.n.map(|n| n[axis]));
+            let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
             for [a, b] in [[a, b], [a + s, b], [a, b + s]] {
                 let (w1, w2) = (a as f32 * per_segment, b as f32 * per_segment);
                 let w = [1.0 - w1 - w2, w1, w2];
-                for axis in 0..3 {
-                    let p = sum(w, self.p.map(|p| p[axis]));
-                    let n = sum(w, self.n.map(|n| n[axis]));
-                    // The sums round numbers of at most this size, here and where vertices are made.
-                    let margin = door.1.tree.reach() * (16.0 * f32::EPSILON);
-                    for d in range {
-                        add(axis, p + n * d - margin);
-                        add(axis, p + n * d + margin);
-                    }
+                let (p, n) = (sum(w, p), sum(w, n));
+                for d in range {
+                    least = least.min(p + n * d);
+                    most = most.max(p + n * d);
                 }
             }
+            node.boxes[axis][0].0[i] = least - margin;
+            node.boxes[axis][1].0[i] = most + margin;
         }
-        boxes
     }
 
     /// Makes the sixteen micro-triangles of a part with four segments and tests them.
@@ -396,6 +437,8 @@ pub struct Meeting<'a, 'm, 'c> {
     pub mesh: &'a TriangleMesh,
     /// What is laid on it.
     pub door: Door<'a, 'm>,
+    /// Displacements that no patch leaves.
+    pub range: [f32; 2],
     /// Boxes seen so far.
     pub nodes: &'c mut NodeCache,
     /// Bytes that they may take.
@@ -418,7 +461,7 @@ impl Meeting<'_, '_, '_> {
         let make = || Patch::new(self.mesh, reliefs, displacement, (prim, cut));
         let mut patch = None;
         let mut stack = [Part::NONE; STACK];
-        let mut depth = start(cut, &mut stack);
+        let mut depth = start(cut, self.range, &mut stack);
         while depth > 0 {
             depth -= 1;
             let part = stack[depth];
@@ -439,18 +482,32 @@ impl Meeting<'_, '_, '_> {
             }
             self.counters.parts += 1;
             let key = (prim, [part.a, part.b, part.size]);
-            let mut near = Row::splat(0.0);
-            let met = if let Some(boxes) = self.nodes.get(key) {
-                ray.slabs.meets(simd, boxes, best.t, &mut near)
+            let door = self.door;
+            let index = if let Some(index) = self.nodes.find(key) {
+                index
             } else {
                 if patch.is_none() {
                     patch = make();
                 }
                 let Some(patch) = &patch else { return best };
-                let boxes = patch.boxes(simd, self.door, &part);
-                self.nodes.put(key, &boxes, self.budget);
-                ray.slabs.meets(simd, &boxes, best.t, &mut near)
+                let node = patch.node(simd, door, &part);
+                self.nodes.put(key, &node, self.budget)
             };
+            let node = self.nodes.at(index);
+            let mut near = Row::splat(0.0);
+            let mut met = ray.slabs.meets(simd, &node.boxes, best.t, &mut near);
+            let rough = met & !node.refined;
+            if rough != 0 {
+                if patch.is_none() {
+                    patch = make();
+                }
+                let Some(patch) = &patch else { return best };
+                for i in ones(rough) {
+                    patch.refine(simd, door, &part, i % PARTS, node);
+                }
+                node.refined |= rough;
+                met &= ray.slabs.meets(simd, &node.boxes, best.t, &mut near);
+            }
             let first = depth;
             let quarter = part.size / 4;
             for i in ones(met) {
@@ -460,6 +517,7 @@ impl Meeting<'_, '_, '_> {
                     a: part.a + a,
                     b: part.b + b,
                     size: s,
+                    range: [node.ranges[0].0[i], node.ranges[1].0[i]],
                     near: near.0[i],
                 };
                 let mut at = depth;
@@ -480,6 +538,7 @@ impl Part {
         a: 0,
         b: 0,
         size: 0,
+        range: [0.0; 2],
         near: f32::NEG_INFINITY,
     };
 }
@@ -487,12 +546,13 @@ impl Part {
 /// Puts the whole triangle on the stack, or its quarters if it would not fall into sixteenths down to four segments;
 /// returns the stack's depth.
 #[inline(always)]
-fn start(cut: Cut, stack: &mut [Part; STACK]) -> usize {
+fn start(cut: Cut, range: [f32; 2], stack: &mut [Part; STACK]) -> usize {
     let size = 1 << cut.segments_log2;
     let part = |[a, b, size]: [i32; 3]| Part {
         a,
         b,
         size,
+        range,
         ..Part::NONE
     };
     if cut.segments_log2.is_multiple_of(2) {
@@ -505,6 +565,12 @@ fn start(cut: Cut, stack: &mut [Part; STACK]) -> usize {
     stack[2] = part([0, h, h]);
     stack[3] = part([h, h, -h]);
     4
+}
+
+/// What rounding may do to a corner of a box, here and where vertices are made: sums of numbers of at most this size.
+#[inline(always)]
+fn margin((_, displacement): Door<'_, '_>) -> f32 {
+    displacement.tree.reach() * (16.0 * f32::EPSILON)
 }
 
 /// The smallest and the largest of numbers that are not NaN, by halves, as vectors do it.

@@ -11,6 +11,17 @@ pub type Row = Lanes<f32, PARTS>;
 /// Boxes of the parts that a part falls into: `[axis][lower, upper]`.
 pub type Boxes = [[Row; 2]; 3];
 
+/// What is known of the sixteen parts that a part falls into.
+#[derive(Debug, Clone, Copy)]
+pub struct Node {
+    /// Their boxes: as wide as the whole part's heights ask for, or their own where `refined` says so.
+    pub boxes: Boxes,
+    /// Smallest and largest displacement in each; of those that are refined and fall into further parts.
+    pub ranges: [Row; 2],
+    /// Parts whose boxes are their own, as bits.
+    pub refined: u64,
+}
+
 /// Which part of which triangle: anchor and signed size in segments.
 pub type PartKey = (u32, [i32; 3]);
 
@@ -20,14 +31,13 @@ const NO_KEY: PartKey = (u32::MAX, [0; 3]);
 /// Entries to begin with.
 const FEW: usize = 1 << 8;
 
-/// Boxes of parts that rays came by. Every box is what would be worked out again, so that what is forgotten changes
-/// no pixel.
+/// Nodes that rays came by. Each is what would be worked out again, so that what is forgotten changes no pixel.
 #[derive(Debug, Default)]
 pub struct NodeCache {
     /// The displacement that it belongs to.
     owner: u64,
     /// Empty until first used, then a power of two.
-    entries: Vec<(PartKey, Boxes)>,
+    entries: Vec<(PartKey, Node)>,
     /// Entries filled since the table grew.
     filled: usize,
 }
@@ -46,38 +56,54 @@ impl NodeCache {
 
     /// Heap bytes.
     pub const fn bytes(&self) -> usize {
-        self.entries.capacity() * size_of::<(PartKey, Boxes)>()
+        self.entries.capacity() * size_of::<(PartKey, Node)>()
     }
 
-    /// The boxes of a part, if they are known.
+    /// Where a part's node is, if it is known.
     #[inline(always)]
-    pub fn get(&self, key: PartKey) -> Option<&Boxes> {
-        let (at, boxes) = self.entries.get(place(key, self.entries.len()))?;
-        (*at == key).then_some(boxes)
+    pub fn find(&self, key: PartKey) -> Option<usize> {
+        let index = place(key, self.entries.len());
+        let (at, _) = self.entries.get(index)?;
+        (*at == key).then_some(index)
     }
 
-    /// Keeps the boxes of a part, perhaps in the place of another's, in at most `budget` bytes.
+    /// The node at a place, good until the next is put.
+    #[inline(always)]
+    pub fn at(&mut self, index: usize) -> &mut Node {
+        &mut self.entries[index].1
+    }
+
+    /// Keeps a part's node, perhaps in the place of another's, in at most `budget` bytes; returns where.
     #[inline(never)]
-    pub fn put(&mut self, key: PartKey, boxes: &Boxes, budget: usize) {
+    pub fn put(&mut self, key: PartKey, node: &Node, budget: usize) -> usize {
         // Growing is worth its while once about half of the places have been taken.
         if 2 * self.filled >= self.entries.len() {
             let size = (2 * self.entries.len()).max(FEW);
-            if size == FEW || size * size_of::<(PartKey, Boxes)>() <= budget {
-                let empty = (NO_KEY, [[Row::splat(0.0); 2]; 3]);
+            if size == FEW || size * size_of::<(PartKey, Node)>() <= budget {
+                let empty = (NO_KEY, Node::EMPTY);
                 let old = std::mem::replace(&mut self.entries, vec![empty; size]);
                 self.filled = 0;
-                for (key, boxes) in old {
+                for (key, node) in old {
                     if key != NO_KEY {
-                        self.entries[place(key, size)] = (key, boxes);
+                        self.entries[place(key, size)] = (key, node);
                         self.filled += 1;
                     }
                 }
             }
         }
         let entry = place(key, self.entries.len());
-        self.entries[entry] = (key, *boxes);
+        self.entries[entry] = (key, *node);
         self.filled += 1;
+        entry
     }
+}
+
+impl Node {
+    const EMPTY: Self = Self {
+        boxes: [[Row::splat(0.0); 2]; 3],
+        ranges: [Row::splat(0.0); 2],
+        refined: 0,
+    };
 }
 
 /// Where a part is kept among `entries`.
@@ -96,23 +122,27 @@ mod tests {
 
     const MUCH: usize = 1 << 24;
 
-    fn boxes(x: f32) -> Boxes {
-        [[Row::splat(x); 2]; 3]
+    fn node(refined: u64) -> Node {
+        Node {
+            refined,
+            ..Node::EMPTY
+        }
     }
 
     #[test]
-    fn boxes_are_kept_until_others_take_their_place_or_the_owner_changes() {
+    fn nodes_are_kept_until_others_take_their_place_or_the_owner_changes() {
         let mut cache = NodeCache::default();
         cache.prepare(1, MUCH);
         let key = (7, [4, 8, 16]);
-        assert!(cache.get(key).is_none());
-        cache.put(key, &boxes(3.0), MUCH);
-        assert_eq!(cache.get(key).expect("kept")[0][0].0[5], 3.0);
-        assert!(cache.get((7, [4, 8, -16])).is_none());
+        assert_eq!(cache.find(key), None);
+        let index = cache.put(key, &node(3), MUCH);
+        assert_eq!(cache.find(key), Some(index));
+        assert_eq!(cache.at(index).refined, 3);
+        assert_eq!(cache.find((7, [4, 8, -16])), None);
         cache.prepare(1, MUCH);
-        assert!(cache.get(key).is_some());
+        assert_eq!(cache.find(key), Some(index));
         cache.prepare(2, MUCH);
-        assert!(cache.get(key).is_none());
+        assert_eq!(cache.find(key), None);
     }
 
     #[test]
@@ -123,11 +153,11 @@ mod tests {
         for round in 0..2 {
             for i in 0..20_000_u32 {
                 let key = (i, [0, 0, 16]);
-                if let Some(found) = cache.get(key) {
-                    assert_eq!(found[2][1].0[0], i as f32, "round {round}");
+                if let Some(index) = cache.find(key) {
+                    assert_eq!(cache.at(index).refined, u64::from(i), "round {round}");
                 }
-                cache.put(key, &boxes(i as f32), budget);
-                assert!(cache.get(key).is_some());
+                let index = cache.put(key, &node(u64::from(i)), budget);
+                assert_eq!(cache.find(key), Some(index));
             }
         }
         assert!(cache.bytes() <= budget && cache.bytes() > budget / 4);

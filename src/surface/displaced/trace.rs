@@ -6,7 +6,7 @@ use super::charts::Shape;
 use super::fine::{Best, Cut, FineCounters, FineRay, Meeting, Patch};
 use super::flat::FlatPrism;
 use super::nodes::NodeCache;
-use super::{Displacement, Reliefs};
+use super::{Displacement, Reliefs, seams};
 use crate::geometry::{Ray, TriangleMesh};
 use crate::math::simd::{Kernel, Simd, SimdLevel};
 use crate::surface::SurfaceInteraction;
@@ -287,6 +287,7 @@ impl Kernel for Visit<'_, '_, '_> {
         let mut meeting = Meeting {
             mesh,
             door: (&reliefs, displacement),
+            range: seams::range(&reliefs).map(|d| d as f32),
             nodes,
             budget: *budget,
             counters: FineCounters::default(),
