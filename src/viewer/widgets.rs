@@ -119,7 +119,7 @@ impl Number {
             .range(self.range.clone())
             .speed(self.speed)
             .suffix(self.suffix)
-            .max_decimals(5)
+            .max_decimals(if T::INTEGRAL { 0 } else { 5 })
     }
 }
 
