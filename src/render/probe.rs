@@ -305,7 +305,7 @@ fn hit_story(
         mapped.n_shade = plain.n_geo;
     }
     material.place_baked_frame((frame.mesh, frame.tangents), hit, &mut mapped);
-    let diffuse = surface::perturb(material, parts, &mut mapped, true);
+    let diffuse = surface::perturb(material, parts, &mut mapped);
     let slope_variance = surface::slope_variance(material, parts, &mapped);
     let has_uv = parts > SurfaceParts::Plain;
     let front = plain.wo.dot(plain.n_geo) >= 0.0;

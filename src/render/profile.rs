@@ -139,7 +139,7 @@ pub fn profile(snapshot: &Snapshot, pixel: [u32; 2]) -> Result<ReliefProfile, No
     let cut = Cut::new(&frame, field, &ray, &hit)?;
     let mut truth = cut.surface;
     material.place_baked_frame((frame.mesh, frame.tangents), &hit, &mut truth);
-    material.mapping.apply(&mut truth, true);
+    material.mapping.apply_to_point(&mut truth);
     let run = |method: Method, edit: &dyn Fn(&mut MappingSettings)| {
         let mut mapping = with_method(&snapshot.settings.mapping, method);
         edit(&mut mapping);
@@ -151,7 +151,7 @@ pub fn profile(snapshot: &Snapshot, pixel: [u32; 2]) -> Result<ReliefProfile, No
         );
         let mut s = cut.surface;
         material.place_baked_frame((frame.mesh, frame.tangents), &hit, &mut s);
-        material.mapping.apply(&mut s, true);
+        material.mapping.apply_to_point(&mut s);
         s
     };
     let chosen = snapshot.settings.mapping.method;

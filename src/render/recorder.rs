@@ -207,7 +207,7 @@ impl<'a> Recorder<'a> {
             }
             let mut moved = base;
             if run.kind.parts == SurfaceParts::Gradients {
-                material.mapping.apply(&mut moved, true);
+                material.mapping.apply_to_point(&mut moved);
             }
             Vec2::new(moved.uv.x, moved.uv.y)
         });

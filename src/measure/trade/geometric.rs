@@ -86,7 +86,7 @@ impl<'a> TrueView<'a> {
             } else {
                 let material = &frame.materials[sight.material];
                 material.place_baked_frame((frame.mesh, frame.tangents), &sight.hit, &mut s);
-                material.mapping.apply(&mut s, true);
+                material.mapping.apply_to_point(&mut s);
             }
             let rates = field.texels_per_uv();
             let du = (f64::from(s.uv.x) - landing.uv.x) * rates[0];

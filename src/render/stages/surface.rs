@@ -321,16 +321,15 @@ pub fn cone_footprint<F: crate::math::Real>(
     footprint(width, s)
 }
 
-/// Applies the material's maps to one point or to one in each lane; returns the diffuse colour.
-#[inline(always)]
-pub fn perturb<F: crate::math::Real>(
+/// Applies the material's maps to a single point; returns the diffuse colour.
+#[must_use]
+pub fn perturb(
     material: &FrameMaterial<'_>,
     parts: SurfaceParts,
-    s: &mut SurfaceInteraction<F>,
-    wanted: F::Mask,
-) -> LinearRgb<F> {
+    s: &mut SurfaceInteraction,
+) -> LinearRgb {
     if parts == SurfaceParts::Gradients {
-        material.mapping.apply(s, wanted);
+        material.mapping.apply_to_point(s);
     }
     diffuse(material, parts, s)
 }

@@ -192,6 +192,13 @@ impl<'a> MaterialMapping<'a> {
         self.tilt.apply(s);
     }
 
+    /// [`Self::apply`] for a single point. Compiled once, not where it is called: it is as long as all methods
+    /// together.
+    #[inline(never)]
+    pub fn apply_to_point(&self, s: &mut SurfaceInteraction) {
+        self.apply(s, true);
+    }
+
     /// How much the slopes of the relief differ over the footprint of a point that maps were applied to: the
     /// variance, the mean of both axes. 0 for maps that are read at points.
     #[inline(always)]
