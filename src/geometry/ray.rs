@@ -16,6 +16,16 @@ pub struct Ray {
 }
 
 impl Ray {
+    /// The ray that leaves a point in the unit direction `dir`, clear of its own triangle: see
+    /// [`offset_by_bound`], whose `p`, `bound` and `n_geo` are given.
+    #[must_use]
+    pub fn leaving((p, bound, n_geo): (Vec3, f32, Vec3), dir: Vec3) -> Self {
+        Self {
+            origin: offset_by_bound(p.into(), bound, n_geo.into(), dir.into()).into(),
+            dir,
+        }
+    }
+
     /// The point at distance `t`.
     #[must_use]
     pub fn at(&self, t: f32) -> Vec3 {

@@ -20,4 +20,4 @@ pub use hash::{hash, unit_interval};
 pub use normalize::normalize_or;
 pub use power::power_below_one;
 pub use real::{Bits, Mask, Real};
-pub use vector::{V2, V3};
+pub use vector::{V2, V3, angle};

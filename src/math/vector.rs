@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::real::{Mask, Real};
 
@@ -24,6 +24,12 @@ pub struct V3<F = f32> {
     pub y: F,
     /// Third.
     pub z: F,
+}
+
+/// Angle between two directions, radians, without the loss of the arc cosine near 0.
+#[must_use]
+pub fn angle(a: DVec3, b: DVec3) -> f64 {
+    a.cross(b).length().atan2(a.dot(b))
 }
 
 impl<F: Real> V2<F> {

@@ -1,8 +1,7 @@
 //! How far every pixel of one shown picture is from another's, for false colours.
 
 use super::flip::{PIXELS_PER_DEGREE, flip};
-use super::trade::angle_deg;
-use crate::math::{LinearRgb, linear_from_srgb};
+use crate::math::{LinearRgb, angle, linear_from_srgb};
 use crate::render::{PixelRecord, Records};
 
 /// What is measured in each pixel.
@@ -172,7 +171,9 @@ fn record_difference(
         _ => return f32::INFINITY,
     };
     match metric {
-        ErrorMetric::NormalAngle => angle_deg(a.normal.as_dvec3(), b.normal.as_dvec3()) as f32,
+        ErrorMetric::NormalAngle => {
+            angle(a.normal.as_dvec3(), b.normal.as_dvec3()).to_degrees() as f32
+        }
         ErrorMetric::Depth => (a.depth - b.depth).abs(),
         _ if material != other => f32::INFINITY,
         _ => match (a.uv, b.uv, records.texels_per_uv.get(usize::from(material))) {

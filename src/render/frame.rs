@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::Snapshot;
-use super::material::FrameMaterial;
+use super::material::{BoundOpacity, FrameMaterial};
 use crate::geometry::bvh::Bvh;
 use crate::geometry::{TangentCell, TriangleAttributes, TriangleMesh};
 use crate::math::simd::SimdLevel;
@@ -15,6 +15,7 @@ use crate::shading::{Falloff, LightKind};
 use crate::surface::displaced::{DisplacedMesh, Displacement, Reliefs};
 use crate::surface::mapping::MappingSettings;
 use crate::surface::mapping::relief::ReliefField;
+use crate::surface::uv_at;
 
 /// Camera rays of a pinhole in internal units (report 2.1–2.3 with rotation; pixel row 0 on top).
 #[derive(Debug, Clone, Copy)]
@@ -134,6 +135,21 @@ impl<'a> Frame<'a> {
     pub fn displaces(&self, attributes: TriangleAttributes) -> bool {
         let material = || &self.materials[usize::from(attributes.material)];
         self.displaced.is_some() && attributes.has_uv && material().relief.is_some()
+    }
+
+    /// The map of the holes in triangles of this kind.
+    #[inline]
+    #[must_use]
+    pub fn holes(&self, attributes: TriangleAttributes) -> Option<&BoundOpacity<'a>> {
+        let material = &self.materials[usize::from(attributes.material)];
+        material.opacity.as_ref().filter(|_| attributes.has_uv)
+    }
+
+    /// Whether a point of a triangle is not cut out.
+    #[must_use]
+    pub fn is_solid(&self, prim: u32, u: f32, v: f32) -> bool {
+        let holes = self.holes(self.mesh.attributes[prim as usize]);
+        holes.is_none_or(|opacity| opacity.is_solid(uv_at(self.mesh, prim, u, v).into()))
     }
 
     /// Whether triangles of the tree may not be there.

@@ -11,8 +11,8 @@ use super::stages::{
 };
 use super::{Counters, Frame, Snapshot};
 use crate::geometry::triangle::Watertight;
-use crate::geometry::{Hit, Ray, offset_by_bound};
-use crate::math::{LinearRgb, V3, gamma, srgb8_from_linear};
+use crate::geometry::{Hit, Ray};
+use crate::math::{LinearRgb, V3, angle, gamma, srgb8_from_linear};
 use crate::scene::BentNormals;
 use crate::shading::softened_horizon;
 use crate::surface::displaced::{SurfaceHit, Tracer};
@@ -315,6 +315,7 @@ fn hit_story(
         towards_eye(mapped.n_shade).into(),
     );
     let n_smooth = towards_eye(plain.n_shade);
+    let tilt = angle(n_smooth.as_dvec3(), Vec3::from(mapped.n_shade).as_dvec3());
     let per_world = |g: V3| (Vec3::from(g).as_dvec3() * normalization.scale).to_array();
     HitStory {
         t: normalization.world_length(hit.t),
@@ -330,7 +331,7 @@ fn hit_story(
         n_geo: mapped.n_geo.into(),
         n_smooth: n_smooth.to_array(),
         n_shade: mapped.n_shade.into(),
-        tilt_deg: angle(n_smooth, mapped.n_shade.into()).to_degrees(),
+        tilt_deg: tilt.to_degrees() as f32,
         diffuse,
         ambient: diffuse * frame.ambient,
         lights: frame
@@ -438,14 +439,8 @@ fn occluder(
     let way_out = stages::relief::way_out((s.sunk, s.n_geo), s.wo, wi, smooth);
     let rounding = way_out.abs().dot(s.n_geo.abs()) * gamma(8);
     let bound = s.n_geo.abs().dot(s.p_error) + rounding;
-    let origin = offset_by_bound(s.p + way_out, bound, s.n_geo, wi).into();
-    let dir = wi.into();
-    nearest(frame, &Ray { origin, dir }, distance * light::LIGHT_END)
-}
-
-/// Angle between unit vectors, accurate near 0 where the arc cosine is not.
-fn angle(a: Vec3, b: Vec3) -> f32 {
-    a.cross(b).length().atan2(a.dot(b))
+    let ray = Ray::leaving(((s.p + way_out).into(), bound, s.n_geo.into()), wi.into());
+    nearest(frame, &ray, distance * light::LIGHT_END)
 }
 
 impl fmt::Display for PixelStory {

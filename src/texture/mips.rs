@@ -43,26 +43,12 @@ impl<T> Mips<'_, T> {
         footprint: F,
         look: &L,
     ) -> [F; N] {
-        // Nothing of this may cost those who do not ask for it.
-        let Some(mips) = mips else {
-            return look.at(base);
+        let (level, halved) = match mips {
+            Some(mips) => (Some(mips.level(footprint)), mips.halved),
+            None => (None, [].as_slice()),
         };
-        let (zero, one) = (footprint.splat(0.0), footprint.splat(1.0));
-        let level = mips.level(footprint);
-        let mut sum = [zero; N];
-        // One loop for all levels: look-ups are long, and every place that calls one is compiled for each kind
-        // of vector instructions.
-        for (i, map) in std::iter::once(base).chain(mips.halved).enumerate() {
-            let share = one - (level - i as f32).abs();
-            let counts = share.gt(zero);
-            if counts.any() {
-                let found = look.at(map);
-                for n in 0..N {
-                    sum[n] = F::select(counts, sum[n] + found[n] * share, sum[n]);
-                }
-            }
-        }
-        sum
+        let maps = std::iter::once(base).chain(halved).enumerate();
+        mixed(level, maps, footprint.splat(0.0), look)
     }
 
     /// The same where only halvings tell anything, and the full map counts as zero.
@@ -73,20 +59,13 @@ impl<T> Mips<'_, T> {
         footprint: F,
         look: &L,
     ) -> [F; N] {
-        let (zero, one) = (footprint.splat(0.0), footprint.splat(1.0));
-        let level = self.level(footprint);
-        let mut sum = [zero; N];
-        for (i, map) in self.halved.iter().enumerate() {
-            let share = one - (level - (i + 1) as f32).abs();
-            let counts = share.gt(zero);
-            if counts.any() {
-                let found = look.at(map);
-                for n in 0..N {
-                    sum[n] = F::select(counts, sum[n] + found[n] * share, sum[n]);
-                }
-            }
-        }
-        sum
+        let maps = (1..).zip(self.halved);
+        mixed(
+            Some(self.level(footprint)),
+            maps,
+            footprint.splat(0.0),
+            look,
+        )
     }
 
     /// How many times the map is halved until a texel is as wide as a footprint; 0 up to the number of halvings.
@@ -96,6 +75,42 @@ impl<T> Mips<'_, T> {
         let last = zero.splat(self.halved.len() as f32);
         log2(footprint * self.rate).larger(zero).smaller(last)
     }
+}
+
+/// The mean of maps, each with its level, weighed by how near that is to `level`; what the first map gives where
+/// there is none.
+///
+/// One look-up for all levels in one loop: look-ups are long, and every place that calls one is compiled for each
+/// kind of vector instructions.
+#[inline(always)]
+fn mixed<'m, F: Real, L: Look<F, N>, const N: usize>(
+    level: Option<F>,
+    maps: impl Iterator<Item = (usize, &'m L::Map)>,
+    zero: F,
+    look: &L,
+) -> [F; N]
+where
+    L::Map: 'm,
+{
+    let one = zero.splat(1.0);
+    let wanted = level.unwrap_or(zero);
+    let mut sum = [zero; N];
+    for (i, map) in maps {
+        let share = one - (wanted - i as f32).abs();
+        let counts = share.gt(zero);
+        if level.is_some() && !counts.any() {
+            continue;
+        }
+        let found = look.at(map);
+        // Nothing of the rest may cost those who do not ask for it.
+        if level.is_none() {
+            return found;
+        }
+        for n in 0..N {
+            sum[n] = F::select(counts, sum[n] + found[n] * share, sum[n]);
+        }
+    }
+    sum
 }
 
 /// Logarithm read off the representation: exact at powers of two, straight between them, at most 0.09 too

@@ -44,7 +44,7 @@ impl PointWork<'_> {
             }
             Self::Mapping(mapping) => {
                 let mut surface = slanted(st);
-                mapping.apply(&mut surface, st.x.eq(st.x));
+                mapping.apply(&mut surface, st.x.eq(st.x), None);
                 surface.n_shade
             }
         }

@@ -5,9 +5,9 @@ use glam::{DVec3, Vec3};
 use super::sights::{Sight, Sights};
 use super::truth::{Landing, Truth, is_behind_relief};
 use super::{GeometricErrors, Stats};
+use crate::geometry::Ray;
 use crate::geometry::triangle::Watertight;
-use crate::geometry::{Ray, offset_by_bound};
-use crate::math::{V2, V3};
+use crate::math::{V2, V3, angle};
 use crate::render::{Frame, FrameLight, FrameLightKind};
 use crate::surface::displaced::Tracer;
 use crate::surface::mapping::relief::is_shadowed;
@@ -95,7 +95,8 @@ impl<'a> TrueView<'a> {
             let moved = Vec3::from(s.p - sight.surface.p).as_dvec3();
             let amplitude = f64::from(field.height.scale.abs());
             depth.push((moved.dot(sight.facet.normal) - landing.z).abs() / amplitude);
-            normal.push(angle_deg(Vec3::from(s.n_shade).as_dvec3(), landing.normal));
+            let shown = Vec3::from(s.n_shade).as_dvec3();
+            normal.push(angle(shown, landing.normal).to_degrees());
             for (light, &truly) in frame.lights.iter().zip(truly_lit) {
                 asked += 1;
                 let lit = is_lit(frame, sight.material, &s, light, &mut tracer)
@@ -137,16 +138,13 @@ impl<'a> TrueView<'a> {
             return false;
         }
         let s = &sight.surface;
-        let wi = V3::from(towards(light, Vec3::from(s.p).as_dvec3()).as_vec3());
+        let p = Vec3::from(s.p);
+        let wi = towards(light, p.as_dvec3()).as_vec3();
         let bound = s.n_geo.abs().dot(s.p_error);
-        let ray = Ray {
-            origin: offset_by_bound(s.p, bound, s.n_geo, wi).into(),
-            dir: wi.into(),
-        };
-        let end = distance(light, s.p.into());
-        let solid = |_: u32, _: f32, _: f32| true;
+        let ray = Ray::leaving((p, bound, s.n_geo.into()), wi);
+        let solid = |prim: u32, u: f32, v: f32| self.frame.is_solid(prim, u, v);
         let bvh = self.frame.bvh;
-        bvh.occluded::<Watertight, _>(&ray, end, &solid)
+        bvh.occluded::<Watertight, _>(&ray, distance(light, p), &solid)
     }
 }
 
@@ -209,12 +207,6 @@ fn towards(light: &FrameLight, p: DVec3) -> DVec3 {
     }
 }
 
-/// Angle between two directions, degrees, without the loss of `acos` near 0.
-#[must_use]
-pub fn angle_deg(a: DVec3, b: DVec3) -> f64 {
-    a.cross(b).length().atan2(a.dot(b)).to_degrees()
-}
-
 impl Stats {
     /// Of errors in any order; zeros if there are none.
     #[must_use]
@@ -271,9 +263,9 @@ mod tests {
     #[test]
     fn small_angles_are_not_lost() {
         let tilted = DVec3::new(1e-9, 0.0, 1.0);
-        let angle = angle_deg(DVec3::Z, tilted).to_radians();
-        assert!((angle - 1e-9).abs() < 1e-15, "{angle}");
-        assert!((angle_deg(DVec3::Z, -DVec3::Z) - 180.0).abs() < 1e-12);
+        let small = angle(DVec3::Z, tilted);
+        assert!((small - 1e-9).abs() < 1e-15, "{small}");
+        assert!((angle(DVec3::Z, -DVec3::Z) - std::f64::consts::PI).abs() < 1e-12);
     }
 
     #[test]

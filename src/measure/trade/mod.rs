@@ -34,7 +34,7 @@ mod variant;
 
 pub use advice::{Advice, Measured, Question, advise};
 pub use chart::short;
-pub use geometric::{angle_deg, outline_agreement, quantile};
+pub use geometric::{outline_agreement, quantile};
 pub use glance::{Glance, GlancePoint, glance};
 pub use merge::{MergeError, merge};
 pub use page::page;

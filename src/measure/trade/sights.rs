@@ -4,10 +4,10 @@ use super::facet::Facet;
 use super::truth::MIN_COS;
 use crate::geometry::triangle::Watertight;
 use crate::geometry::{Hit, Ray};
-use crate::math::{V2, hash, unit_interval};
+use crate::math::{hash, unit_interval};
 use crate::render::Frame;
 use crate::surface::displaced::Tracer;
-use crate::surface::{SurfaceInteraction, SurfaceParts, surface_at, uv_at};
+use crate::surface::{SurfaceInteraction, SurfaceParts, surface_at};
 
 /// A view ray that shows a relief from its front.
 #[derive(Debug, Clone, Copy)]
@@ -74,15 +74,6 @@ impl<'a> Pinhole<'a> {
         }
     }
 
-    /// Whether a point of the mesh is not cut out.
-    fn is_solid(&self, prim: u32, u: f32, v: f32) -> bool {
-        let mesh = self.frame.mesh;
-        let attributes = mesh.attributes[prim as usize];
-        let opacity = &self.frame.materials[usize::from(attributes.material)].opacity;
-        let uv = || V2::from(uv_at(mesh, prim, u, v));
-        !attributes.has_uv || opacity.as_ref().is_none_or(|o| o.is_solid(uv()))
-    }
-
     /// Whether the ray through a place of the picture hits anything, of a displaced surface where there is one.
     fn is_covered(&self, place: [f32; 2], tracer: &mut Tracer) -> bool {
         let (frame, ray) = (self.frame, self.ray(place));
@@ -91,19 +82,19 @@ impl<'a> Pinhole<'a> {
             mesh.blocks(tracer, &ray, f32::INFINITY, frame.level)
         });
         let stays = |prim: u32, u: f32, v: f32| {
-            !frame.displaces(frame.mesh.attributes[prim as usize]) && self.is_solid(prim, u, v)
+            !frame.displaces(frame.mesh.attributes[prim as usize]) && frame.is_solid(prim, u, v)
         };
         let plain = || {
             let bvh = frame.bvh;
-            bvh.intersect::<Watertight, _>(&ray, f32::INFINITY, &stays)
+            bvh.occluded::<Watertight, _>(&ray, f32::INFINITY, &stays)
         };
-        displaced || plain().is_some()
+        displaced || plain()
     }
 
     /// `None` if the ray misses the mesh; `Some(None)` if it hits something without a relief.
     fn look(&self, place: [f32; 2]) -> Option<Option<Sight>> {
         let (frame, ray) = (self.frame, self.ray(place));
-        let solid = |prim: u32, u: f32, v: f32| self.is_solid(prim, u, v);
+        let solid = |prim: u32, u: f32, v: f32| frame.is_solid(prim, u, v);
         let hit = frame
             .bvh
             .intersect::<Watertight, _>(&ray, f32::INFINITY, &solid)?;

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3, Vec3};
 use super::facet::Facet;
 use super::sights::Sight;
 use super::subject::with_mapping;
-use crate::geometry::{Ray, offset_by_bound};
+use crate::geometry::Ray;
 use crate::math::gamma;
 use crate::render::{Frame, Snapshot};
 use crate::surface::displaced::Tracer;
@@ -142,10 +142,7 @@ pub fn is_behind_relief(
     let Some(relief) = &frame.displaced else {
         return false;
     };
-    let ray = Ray {
-        origin: offset_by_bound(p.into(), bound, n.into(), wi.into()).into(),
-        dir: wi,
-    };
+    let ray = Ray::leaving((p, bound, n), wi);
     let mesh = relief.mesh(frame.mesh);
     mesh.blocks(tracer, &ray, distance, frame.level)
 }

@@ -13,7 +13,7 @@ use crate::math::simd::{Kernel, Simd, SimdBase as _, SimdLevel, SimdMask as _};
 use crate::math::wide::{Wide, WideBits};
 use crate::math::{Bits as _, LinearRgb, Mask as _, Real as _, V3};
 use crate::scene::TextureFilter;
-use crate::surface::mapping::relief::{ReliefField, found, landed, sinking_ray, view_ray};
+use crate::surface::mapping::relief::{Found, ReliefField, found, landed, sinking_ray, view_ray};
 use crate::surface::{BakedFrame, FacetKind, SurfaceInteraction, SurfaceParts, footprint};
 
 /// Makes the surfaces that the rays hit, perturbed by their materials' maps and turned towards the eye.
@@ -236,20 +236,13 @@ impl Kernel for MapRun<'_> {
                 let barycentrics = (self.hits.u.get(simd, group), self.hits.v.get(simd, group));
                 frame.place(barycentrics, &mut s);
             }
-            if walked {
-                let from = &self.surfaces.relief;
-                let [u, v] = &from.uv;
-                let place = [
-                    u.get(simd, group),
-                    v.get(simd, group),
-                    from.z.get(simd, group),
-                ];
-                let [u, v, z] = place;
-                let usable = from.usable.mask(simd, group);
-                let found = found(&s, [u, v, z, from.steps.get(simd, group)], usable);
-                material.mapping.apply_found(&mut s, &found);
-            } else if perturbed {
-                material.mapping.apply(&mut s, mask);
+            if perturbed {
+                let known = if walked {
+                    Some(self.walked(simd, group, &s))
+                } else {
+                    None
+                };
+                material.mapping.apply(&mut s, mask, known);
             }
             let slope_variance = slope_variance(material, self.run.kind.parts, &s);
             if let Some(points) = self
@@ -295,6 +288,21 @@ impl Kernel for MapRun<'_> {
 }
 
 impl MapRun<'_> {
+    /// Where the walks of a group's points came out.
+    #[inline(always)]
+    fn walked<S: Simd>(
+        &self,
+        simd: S,
+        group: usize,
+        s: &SurfaceInteraction<Wide<S>>,
+    ) -> Found<Wide<S>> {
+        let from = &self.surfaces.relief;
+        let [u, v] = &from.uv;
+        let (u, v) = (u.get(simd, group), v.get(simd, group));
+        let (z, steps) = (from.z.get(simd, group), from.steps.get(simd, group));
+        found(s, [u, v, z, steps], from.usable.mask(simd, group))
+    }
+
     /// The frames of baked normal maps on the triangles of a group.
     #[inline(always)]
     fn baked_frame<S: Simd>(&self, simd: S, group: usize) -> BakedFrame<Wide<S>> {

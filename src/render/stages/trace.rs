@@ -6,9 +6,7 @@ use super::super::{Counters, Frame};
 use super::{PLACES, Rays, Shadows, displaced};
 use crate::geometry::HitLanes;
 use crate::geometry::bvh::AcceptAll;
-use crate::math::V2;
 use crate::surface::displaced::Tracer;
-use crate::surface::uv_at;
 
 /// Closest hits of all rays.
 pub fn closest_hits(
@@ -93,14 +91,10 @@ impl CutoutTests {
         if frame.displaces(attributes) {
             return false;
         }
-        let Some(opacity) = &frame.materials[usize::from(attributes.material)].opacity else {
-            return true;
-        };
-        if !attributes.has_uv {
-            return true;
+        if frame.holes(attributes).is_some() {
+            self.0.set(self.0.get() + 1);
         }
-        self.0.set(self.0.get() + 1);
-        opacity.is_solid(V2::from(uv_at(frame.mesh, prim, u, v)))
+        frame.is_solid(prim, u, v)
     }
 
     fn count(&self, counters: &mut Counters) {

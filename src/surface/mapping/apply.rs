@@ -177,17 +177,30 @@ impl<'a> MaterialMapping<'a> {
 
     /// Moves the texture coordinate and tilts `n_shade` of a point, or of one in each lane. It must have
     /// texture coordinates and lie on this material. Normals stay on the front side's terms; facing the eye
-    /// is decided later. Searches leave out points that are not `wanted`.
+    /// is decided later. Searches leave out points that are not `wanted`, and do not begin if what they would
+    /// come to is `known`.
     #[inline(always)]
-    pub fn apply<F: Real>(&self, s: &mut SurfaceInteraction<F>, wanted: F::Mask) {
-        match &self.shift {
-            Shift::Stay => {}
-            Shift::Parallax(h) => s.uv = parallax(h, s),
-            Shift::Limited(h) => s.uv = parallax_limited(h, s),
-            Shift::Search(search) => {
-                let found = search.run(s, wanted);
-                move_to(s, &found);
+    pub fn apply<F: Real>(
+        &self,
+        s: &mut SurfaceInteraction<F>,
+        wanted: F::Mask,
+        known: Option<Found<F>>,
+    ) {
+        let found = match (&self.shift, known) {
+            (Shift::Search(search), None) => Some(search.run(s, wanted)),
+            (Shift::Search(_), known) => known,
+            (Shift::Stay, _) => None,
+            (Shift::Parallax(h), _) => {
+                s.uv = parallax(h, s);
+                None
             }
+            (Shift::Limited(h), _) => {
+                s.uv = parallax_limited(h, s);
+                None
+            }
+        };
+        if let Some(found) = found {
+            move_to(s, &found);
         }
         self.tilt.apply(s);
     }
@@ -196,7 +209,7 @@ impl<'a> MaterialMapping<'a> {
     /// together.
     #[inline(never)]
     pub fn apply_to_point(&self, s: &mut SurfaceInteraction) {
-        self.apply(s, true);
+        self.apply(s, true, None);
     }
 
     /// How much the slopes of the relief differ over the footprint of a point that maps were applied to: the
@@ -205,13 +218,6 @@ impl<'a> MaterialMapping<'a> {
     #[must_use]
     pub fn slope_variance<F: Real>(&self, s: &SurfaceInteraction<F>) -> F {
         self.tilt.slope_variance(s)
-    }
-
-    /// [`Self::apply`] where the search is over already.
-    #[inline(always)]
-    pub fn apply_found<F: Real>(&self, s: &mut SurfaceInteraction<F>, found: &Found<F>) {
-        move_to(s, found);
-        self.tilt.apply(s);
     }
 }
 

@@ -253,26 +253,19 @@ impl<'a> BoundNormal<'a> {
 }
 
 impl BoundNormal<'_> {
-    /// Stored vector at `uv`, the mean over the footprint of a point; x along +u and y along +v, before
-    /// `strength`.
+    /// Stored vector at `uv`, the mean over the footprint of a point, before `strength`: x along +u and y along +v,
+    /// or in the axes of the model's file.
     #[inline(always)]
     #[must_use]
     pub fn stored<F: Real>(&self, uv: V2<F>, footprint: F) -> V3<F> {
         let st = self.addressing.st(uv);
         let V3 { x, y, z } = self.signed(st, footprint);
-        if self.addressing.wrap == Wrap::Mirror {
+        // Turned-over and mirrored copies of a picture say the same in the axes of the file.
+        if self.addressing.wrap == Wrap::Mirror && self.space != NormalSpace::Object {
             V3::new(unmirrored(x, st.x), unmirrored(y, st.y), z)
         } else {
             V3::new(x, y, z)
         }
-    }
-
-    /// The same in the axes of the model's file. Turned-over and mirrored copies of a picture say the same
-    /// there.
-    #[inline(always)]
-    #[must_use]
-    pub fn stored_in_object<F: Real>(&self, uv: V2<F>, footprint: F) -> V3<F> {
-        self.signed(self.addressing.st(uv), footprint)
     }
 
     /// Variance of a slope map's slopes over the footprint of a point, the mean of both axes.

@@ -14,4 +14,4 @@ pub use apply::{MaterialMapping, MaterialMaps, parallax, parallax_limited};
 pub use bound::{BoundHeight, BoundNormal};
 pub use method::{ErrorClass, Method, MethodInfo, MethodReads};
 pub use settings::{Derivative, Lookup, MappingSettings, SearchSettings};
-pub use tilt::{baked_normal_mapped, bumped, normal_mapped, object_normal_mapped, slope_mapped};
+pub use tilt::bumped;

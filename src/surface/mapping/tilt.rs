@@ -66,10 +66,16 @@ impl<'a> Tilt<'a> {
             Self::Keep => {}
             Self::Analytic(h) => s.n_shade = bumped(s, h.analytic_slope(s.uv, s.footprint)),
             Self::Central(h) => s.n_shade = bumped(s, h.central_slope(s.uv, s.footprint)),
-            Self::Normal(n) => s.n_shade = normal_mapped(n, s),
-            Self::Baked(n) => s.n_shade = baked_normal_mapped(n, s),
-            Self::Object(n) => s.n_shade = object_normal_mapped(n, s),
-            Self::Slope(n) => s.n_shade = slope_mapped(n, s),
+            // One look-up for all kinds of vectors: it is longer than what follows.
+            Self::Normal(n) | Self::Baked(n) | Self::Object(n) | Self::Slope(n) => {
+                let m = n.stored(s.uv, s.footprint);
+                s.n_shade = match self {
+                    Self::Baked(_) => baked_normal_mapped(m, n.strength, s),
+                    Self::Object(_) => object_normal_mapped(m, n.strength, s),
+                    Self::Slope(_) => slope_mapped(m, n.strength, s),
+                    _ => tilted(s, m, n.strength),
+                };
+            }
         }
     }
 }
@@ -83,28 +89,17 @@ pub fn bumped<F: Real>(s: &SurfaceInteraction<F>, slope: V2<F>) -> V3<F> {
     (s.n_shade - s.grad_u * slope.x - s.grad_v * slope.y).normalize_or(s.n_shade)
 }
 
-/// `N' = normalize(m_z N + k (m_x T + m_y B))`: a tangent-space normal `m` with its slopes scaled by k.
-///
-/// T follows +u on the triangle, made perpendicular to the smooth normal; B completes the frame on the
-/// side of +v. Where the texture has no area the normal stays.
-#[inline(always)]
-#[must_use]
-pub fn normal_mapped<F: Real>(map: &BoundNormal<'_>, s: &SurfaceInteraction<F>) -> V3<F> {
-    tilted(s, map.stored(s.uv, s.footprint), map.strength)
-}
-
 /// The same in the frame that MikkTSpace makes, which [`BakedFrame`](crate::surface::BakedFrame) has put in
 /// the place of the surface's own: interpolated, neither normalised nor made perpendicular, because bakers
 /// invert exactly that.
 ///
 /// Source: the reference implementation's notes on pixel shaders, mikktspace.com.
 #[inline(always)]
-#[must_use]
-pub fn baked_normal_mapped<F: Real>(map: &BoundNormal<'_>, s: &SurfaceInteraction<F>) -> V3<F> {
-    let (n, m) = (s.n_shade, map.stored(s.uv, s.footprint));
+fn baked_normal_mapped<F: Real>(m: V3<F>, strength: f32, s: &SurfaceInteraction<F>) -> V3<F> {
+    let n = s.n_shade;
     let zero = m.x.splat(0.0);
     let bitangent = n.cross(s.dp_du) * s.handedness;
-    let tilted = n * m.z + (s.dp_du * m.x + bitangent * m.y) * zero.splat(map.strength);
+    let tilted = n * m.z + (s.dp_du * m.x + bitangent * m.y) * zero.splat(strength);
     V3::select(!s.handedness.eq(zero), tilted.normalize_or(n), n)
 }
 
@@ -113,22 +108,23 @@ pub fn baked_normal_mapped<F: Real>(map: &BoundNormal<'_>, s: &SurfaceInteractio
 ///
 /// Needs no frame, so that charts may be mirrored or without area.
 #[inline(always)]
-#[must_use]
-pub fn object_normal_mapped<F: Real>(map: &BoundNormal<'_>, s: &SurfaceInteraction<F>) -> V3<F> {
-    let (n, m) = (s.n_shade, map.stored_in_object(s.uv, s.footprint));
+fn object_normal_mapped<F: Real>(m: V3<F>, strength: f32, s: &SurfaceInteraction<F>) -> V3<F> {
+    let n = s.n_shade;
     let across = m - n * n.dot(m);
-    (m + across * m.x.splat(map.strength - 1.0)).normalize_or(n)
+    (m + across * m.x.splat(strength - 1.0)).normalize_or(n)
 }
 
 /// `N' = normalize(N − k (h_x T + h_y B))` with slopes from red and green (report 2.4.2 and 2.16).
 #[inline(always)]
-#[must_use]
-pub fn slope_mapped<F: Real>(map: &BoundNormal<'_>, s: &SurfaceInteraction<F>) -> V3<F> {
-    let stored = map.stored(s.uv, s.footprint);
+fn slope_mapped<F: Real>(stored: V3<F>, strength: f32, s: &SurfaceInteraction<F>) -> V3<F> {
     let up = stored.z.splat(1.0);
-    tilted(s, V3::new(-stored.x, -stored.y, up), map.strength)
+    tilted(s, V3::new(-stored.x, -stored.y, up), strength)
 }
 
+/// `N' = normalize(m_z N + k (m_x T + m_y B))`: a tangent-space normal `m` with its slopes scaled by k.
+///
+/// T follows +u on the triangle, made perpendicular to the smooth normal; B completes the frame on the
+/// side of +v. Where the texture has no area the normal stays.
 #[inline(always)]
 fn tilted<F: Real>(s: &SurfaceInteraction<F>, m: V3<F>, strength: f32) -> V3<F> {
     let n = s.n_shade;

@@ -173,7 +173,7 @@ fn errors(image: &RawImage, space: NormalSpace) -> [f64; 2] {
             if mapping.needs_baked_frame() {
                 BakedFrame::fetch((&mesh, &tangents), prim, true).place((u, v), &mut s);
             }
-            mapping.apply(&mut s, true);
+            mapping.apply(&mut s, true, None);
             let (found, expected) = (Vec3::from(s.n_shade).as_dvec3(), detailed(p.as_dvec3()));
             angles.push(
                 found

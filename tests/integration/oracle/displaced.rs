@@ -29,7 +29,7 @@ const MIDLEVEL: f32 = 0.4;
 
 /// Hills with noise, so that neighbouring texels differ.
 fn map() -> HeightMap {
-    let mut random = Random(0xD15);
+    let mut random = Random::new(0xD15);
     let texels = (0..SIZE * SIZE).map(|i| {
         let (x, y) = ((i % SIZE) as f64, (i / SIZE) as f64);
         let hill = (x * 0.4).sin() * (y * 0.6).cos() * 0.3 + 0.5;
@@ -316,7 +316,7 @@ fn displaced_surfaces_are_those_of_explicit_tessellation() {
         let explicit = Explicit::new(mesh, map).cut(segments);
         let tree = Bvh::build(&explicit);
         let tolerance = if is_flat { 1e-3 } else { 2e-5 };
-        let mut random = Random(0x7E55);
+        let mut random = Random::new(0x7E55);
         let rays: Vec<Ray> = (0..ray_count()).map(|_| any_ray(&mut random)).collect();
         let found = trace(displaced, &rays, SimdLevel::best());
         let truth = |ray: &Ray| {
@@ -369,7 +369,7 @@ fn closed_displaced_surfaces_let_no_ray_out() {
         }
         let mesh = displaced.mesh;
         let explicit = Explicit::new(mesh, map).cut(segments(mesh));
-        let mut random = Random(0x1EAC);
+        let mut random = Random::new(0x1EAC);
         // From inside, at vertices and edges of the micro-triangles: where leaks are.
         let inside = if name == "cube" { Vec3::ZERO } else { Vec3::X };
         let mut aimed = || {
@@ -392,7 +392,7 @@ fn closed_displaced_surfaces_let_no_ray_out() {
 #[test]
 fn every_level_meets_the_same_points() {
     for_each_displaced(|name, displaced, _| {
-        let mut random = Random(0x1E7E);
+        let mut random = Random::new(0x1E7E);
         let rays: Vec<Ray> = (0..500).map(|_| any_ray(&mut random)).collect();
         let plain = trace(displaced, &rays, SimdLevel::Scalar);
         for level in SimdLevel::ALL.into_iter().filter(|l| l.is_available()) {
@@ -416,7 +416,7 @@ fn every_level_meets_the_same_points() {
 #[test]
 fn the_memory_for_boxes_changes_no_hit() {
     for_each_displaced(|name, displaced, _| {
-        let mut random = Random(0xB0D6);
+        let mut random = Random::new(0xB0D6);
         let rays: Vec<Ray> = (0..500).map(|_| any_ray(&mut random)).collect();
         let plain = trace(displaced, &rays, SimdLevel::best());
         // One tracer, so that what others left there is met again.
@@ -439,7 +439,7 @@ fn the_memory_for_boxes_changes_no_hit() {
 fn points_are_followed_to_the_surface_between_micro_triangles() {
     for_each_displaced(|name, displaced, map| {
         let explicit = Explicit::new(displaced.mesh, map);
-        let mut random = Random(0x5300);
+        let mut random = Random::new(0x5300);
         let (mut moved, mut hits, mut lost) = (0.0_f64, 0_u32, 0_u32);
         for _ in 0..500 {
             let ray = any_ray(&mut random);

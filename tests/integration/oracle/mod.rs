@@ -13,42 +13,19 @@ use reliefscope::geometry::triangle::{TriangleTest, Watertight};
 use reliefscope::geometry::{Hit, Ray, RaySlabs, TriangleAttributes, TriangleMesh};
 use reliefscope::math::V3;
 use reliefscope::measure::report_equations as report;
+use reliefscope::measure::stability::Random;
 use reliefscope::shading::{phong_lobe, reflect};
 use reliefscope::surface::{SurfaceParts, surface_at};
 
-/// Numbers that repeat: splitmix64.
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// In `[low, high)`.
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// In the cube `[-1, 1)³`.
-    fn point(&mut self) -> DVec3 {
-        DVec3::from_array([(); 3].map(|()| self.between(-1.0, 1.0)))
-    }
-
-    /// Unit.
-    fn direction(&mut self) -> DVec3 {
-        loop {
-            let p = self.point();
-            if (0.01..1.0).contains(&p.length_squared()) {
-                return p.normalize();
-            }
-        }
-    }
-
+/// What the tests ask of [`Random`] beside.
+trait RandomDirections {
     /// Unit, on the side of `normal`, at least `min_cos` off its plane.
+    fn direction_above(&mut self, normal: DVec3, min_cos: f64) -> DVec3;
+    /// Any.
+    fn rotation(&mut self) -> DQuat;
+}
+
+impl RandomDirections for Random {
     fn direction_above(&mut self, normal: DVec3, min_cos: f64) -> DVec3 {
         loop {
             let d = self.direction();
@@ -72,11 +49,11 @@ fn rounded(v: DVec3) -> DVec3 {
 /// 2.4–2.8: the watertight test hits and misses what the edge test does, at the same distance.
 #[test]
 fn triangles_are_hit_where_the_edge_test_says() {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let (mut hits, mut misses) = (0, 0);
     for case in 0..20_000 {
-        let corners = [(); 3].map(|()| rounded(random.point()));
-        let origin = rounded(random.point() * 3.0);
+        let corners = [(); 3].map(|()| rounded(random.cube()));
+        let origin = rounded(random.cube() * 3.0);
         let weights = [(); 2].map(|()| random.between(-0.3, 0.8));
         let target = corners[0] * (1.0 - weights[0] - weights[1])
             + corners[1] * weights[0]
@@ -137,10 +114,10 @@ fn one_triangle(corners: [DVec3; 3], uvs: [DVec2; 3]) -> TriangleMesh {
 /// 2.19–2.25: texture coordinates by barycentric weights.
 #[test]
 fn texture_coordinates_are_the_weighted_ones() {
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     for case in 0..2_000 {
-        let corners = [(); 3].map(|()| rounded(random.point()));
-        let uvs = [(); 3].map(|()| rounded(random.point() * 4.0).truncate());
+        let corners = [(); 3].map(|()| rounded(random.cube()));
+        let uvs = [(); 3].map(|()| rounded(random.cube() * 4.0).truncate());
         if report::face_normal(&corners).length() < 0.1 {
             continue;
         }
@@ -178,14 +155,14 @@ fn texture_coordinates_are_the_weighted_ones() {
 /// 2.11–2.13: mirrored directions and highlights, up to exponents that the report never tried.
 #[test]
 fn highlights_are_powers_of_the_cosine() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     for case in 0..20_000 {
         let n = rounded(random.direction());
         let l = rounded(random.direction_above(n, 1e-3));
         let exponent = random.between(-3.0, 20.0).exp2();
         // Close to the mirror image, where there is something to see.
         let spread = (2.0 / (exponent + 1.0)).sqrt();
-        let v = rounded((report::reflect(n, l) + random.point() * spread).normalize());
+        let v = rounded((report::reflect(n, l) + random.cube() * spread).normalize());
         let r = reflect(V3::from(n.as_vec3()), l.as_vec3().into());
         assert!((Vec3::from(r).as_dvec3() - report::reflect(n, l)).length() < 1e-6);
         let expected = report::specular_share(n, l, v, exponent);

@@ -15,7 +15,7 @@ use reliefscope::scene::{
 use reliefscope::shading::{Falloff, Light, LightKind, Material};
 use reliefscope::surface::mapping::MappingSettings;
 
-use super::{Random, one_triangle, rounded};
+use super::{Random, RandomDirections, one_triangle, rounded};
 
 const SIZE: [u32; 2] = [24, 16];
 
@@ -162,10 +162,10 @@ fn reported(
 
 #[test]
 fn a_lit_triangle_is_the_reports_picture() {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     let (mut lit, mut black) = (0, 0);
     for case in 0..40 {
-        let corners = [(); 3].map(|()| rounded(random.point()));
+        let corners = [(); 3].map(|()| rounded(random.cube()));
         if report::face_normal(&corners).length() < 0.5 {
             continue;
         }

@@ -132,7 +132,7 @@ fn field<'a>(height: &'a HeightMap, pyramid: &'a HeightPyramid, wrap: Wrap) -> R
 
 #[test]
 fn the_exact_walk_finds_what_a_walk_over_every_cell_finds() {
-    let mut random = Random(0x0DD5);
+    let mut random = Random::new(0x0DD5);
     for (name, height) in maps() {
         for wrap in Wrap::ALL {
             let pyramid = HeightPyramid::new(&height, wrap);
@@ -171,7 +171,7 @@ fn grazes(field: &ReliefField<'_>, ray: &ReliefRay, z: f64) -> bool {
 
 #[test]
 fn rising_rays_are_shadowed_where_a_walk_over_every_cell_says_so() {
-    let mut random = Random(0x5AD0);
+    let mut random = Random::new(0x5AD0);
     for (name, height) in maps() {
         let pyramid = HeightPyramid::new(&height, Wrap::Repeat);
         let field = field(&height, &pyramid, Wrap::Repeat);
@@ -228,13 +228,17 @@ fn any_ray(field: &ReliefField<'_>, random: &mut Random) -> ReliefRay {
         z: from[2],
         z_rate: dz,
         end,
-        side: if above { Side::Above } else { Side::Below },
+        side: if above {
+            Side::Above
+        } else {
+            Side::Below
+        },
     }
 }
 
 #[test]
 fn walks_from_either_side_meet_the_relief_where_a_fine_march_crosses_it() {
-    let mut random = Random(0x51DE);
+    let mut random = Random::new(0x51DE);
     for (name, height) in maps() {
         let pyramid = HeightPyramid::new(&height, Wrap::Repeat);
         let field = field(&height, &pyramid, Wrap::Repeat);
@@ -245,7 +249,11 @@ fn walks_from_either_side_meet_the_relief_where_a_fine_march_crosses_it() {
             let gap = |tau: f64| {
                 let place = [0, 1].map(|k| ray.start[k] + ray.rate[k] * tau);
                 let gap = ray.z_at(tau) - field.displacement(place);
-                if ray.side == Side::Above { gap } else { -gap }
+                if ray.side == Side::Above {
+                    gap
+                } else {
+                    -gap
+                }
             };
             let reached = walk.at.unwrap_or(ray.end);
             if let Some(at) = walk.at {
@@ -268,7 +276,7 @@ fn walks_from_either_side_meet_the_relief_where_a_fine_march_crosses_it() {
 
 #[test]
 fn walks_in_lanes_come_to_what_walks_alone_come_to() {
-    let mut random = Random(0x1A9E);
+    let mut random = Random::new(0x1A9E);
     for (name, height) in maps() {
         for wrap in Wrap::ALL {
             let pyramid = HeightPyramid::new(&height, wrap);
@@ -289,7 +297,7 @@ fn walks_in_lanes_come_to_what_walks_alone_come_to() {
 
 #[test]
 fn displacement_at_a_place_is_the_bilinear_height() {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     for (_, height) in maps() {
         for wrap in Wrap::ALL {
             let pyramid = HeightPyramid::new(&height, wrap);
