@@ -3,10 +3,6 @@
 use glam::{Vec3, Vec3A};
 
 use super::Ray;
-use crate::math::Real as _;
-use crate::math::lanes::Lanes;
-use crate::math::simd::{Simd, SimdBase as _, SimdMask as _};
-use crate::math::wide::Wide;
 
 /// Relative widening of every box: `16·2⁻²⁴`, see [`RaySlabs`].
 pub(super) const PADDING: f32 = 16.0 * (f32::EPSILON * 0.5);
@@ -71,36 +67,6 @@ impl RaySlabs {
     pub(super) fn shifts(&self) -> [[f32; 2]; 3] {
         let (near, far) = (self.near_shift.to_array(), self.far_shift.to_array());
         [0, 1, 2].map(|axis| [near[axis], far[axis]])
-    }
-
-    /// Which of the sixteen boxes `[axis][lower, upper]` the ray meets in `[0, t_max]`, as bits, and where it
-    /// enters each; the same operations as [`Self::interval`].
-    #[inline(always)]
-    pub(crate) fn meets<S: Simd>(
-        &self,
-        simd: S,
-        boxes: &[[Lanes<f32, 16>; 2]; 3],
-        t_max: f32,
-        near: &mut Lanes<f32, 16>,
-    ) -> u64 {
-        let (inv_dir, shifts) = (self.inv_dir.to_array(), self.shifts());
-        let mut bits = 0;
-        for group in 0..16 / S::f32s::LEN {
-            let mut first = Wide::new(simd, 0.0);
-            let mut last = Wide::new(simd, t_max);
-            for axis in 0..3 {
-                let negative = self.negative[axis];
-                let [near_shift, far_shift] = shifts[axis];
-                let enters = boxes[axis][usize::from(negative)].get(simd, group);
-                let leaves = boxes[axis][usize::from(!negative)].get(simd, group);
-                first = (enters * inv_dir[axis] - near_shift).larger(first);
-                last = (leaves * inv_dir[axis] - far_shift).smaller(last);
-            }
-            near.set(group, first);
-            // Written so that NaN means a visit, which changes no answer.
-            bits |= (!first.gt(last)).0.to_bitmask() << (group * S::f32s::LEN);
-        }
-        bits
     }
 
     /// Where the ray enters and leaves the widened box, as distances along it; may be negative.

@@ -12,7 +12,7 @@ use crate::math::simd::SimdLevel;
 use crate::math::{LinearRgb, Real, V3};
 use crate::scene::{Background, BentNormals, Scene, ShadingModel, TextureFilter};
 use crate::shading::{Falloff, LightKind};
-use crate::surface::displaced::{DisplacedMesh, Displacement, Reliefs};
+use crate::surface::displaced::{DisplacedMesh, Displacement, MicroMesh, Reliefs};
 use crate::surface::mapping::MappingSettings;
 use crate::surface::mapping::relief::ReliefField;
 use crate::surface::uv_at;
@@ -129,6 +129,18 @@ impl<'a> Frame<'a> {
         }
     }
 
+    /// Makes what takes a while and many rays gain by: the micro-triangles of displaced surfaces, if there is memory
+    /// for them. It changes no pixel. Leaves off soon after `stop` says so.
+    pub fn make_ready(&mut self, stop: &(dyn Fn() -> bool + Sync)) {
+        let (mesh, level) = (self.mesh, self.level);
+        if let Some(displaced) = &mut self.displaced {
+            let memory = displaced.memory;
+            let made =
+                (displaced.displacement).make_micro(displaced.mesh(mesh), memory, level, stop);
+            displaced.micro = made;
+        }
+    }
+
     /// Whether triangles of this kind are displaced, so that they are not there themselves.
     #[inline]
     #[must_use]
@@ -179,10 +191,12 @@ pub struct FrameDisplacement<'a> {
     /// One for each material.
     fields: Vec<Option<ReliefField<'a>>>,
     weld_seams: bool,
-    /// Bytes that all workers together may keep boxes in.
-    pub memory: usize,
+    /// Bytes that micro-triangles may be kept in.
+    memory: usize,
     /// What was made of them and the mesh.
     pub displacement: Arc<Displacement>,
+    /// All its micro-triangles, if they are there.
+    micro: Option<Arc<MicroMesh>>,
 }
 
 impl<'a> FrameDisplacement<'a> {
@@ -200,10 +214,12 @@ impl<'a> FrameDisplacement<'a> {
                 weld_seams,
             };
             let displacement = scene.displaced.get(&scene.mesh, &reliefs);
+            let memory = (mapping.displacement_memory as usize) << 20;
             Self {
+                micro: displacement.micro(memory),
                 fields,
                 weld_seams,
-                memory: (mapping.displacement_memory as usize) << 20,
+                memory,
                 displacement,
             }
         })
@@ -219,6 +235,7 @@ impl<'a> FrameDisplacement<'a> {
                 weld_seams: self.weld_seams,
             },
             displacement: &self.displacement,
+            micro: self.micro.as_deref(),
         }
     }
 }

@@ -159,7 +159,12 @@ impl Progressive {
         let Some(snapshot) = &self.snapshot else {
             return (PassEnd::Complete, Vec::new());
         };
-        let frame = Frame::new(snapshot);
+        let mut frame = Frame::new(snapshot);
+        // Not for previews: what moves may have changed before it is done.
+        if film.stride == 1 && film.samples() < goal {
+            self.pool.install(|| frame.make_ready(stop));
+        }
+        let frame = frame;
         let recording = self.recording;
         let yardsticks =
             (recording != Recording::Nothing).then(|| Yardsticks::new(snapshot, recording));
@@ -172,9 +177,6 @@ impl Progressive {
             let mut scratch = self.scratch[context.index()]
                 .lock()
                 .unwrap_or_else(PoisonError::into_inner);
-            if frame.displaced.is_none() {
-                scratch.work.tracer.forget();
-            }
             while let Some(&i) = film.order.get(next.fetch_add(1, Ordering::Relaxed)) {
                 let mut tile = lock(&film.tiles[i]);
                 if tile.samples < goal {
@@ -232,14 +234,13 @@ impl Progressive {
         sum
     }
 
-    /// Heap bytes that the workers keep of displaced triangles.
+    /// Heap bytes of the micro-triangles that are kept of displaced surfaces.
     #[must_use]
     pub fn kept_bytes(&self) -> usize {
-        let kept = |scratch: &Mutex<Scratch>| {
-            let scratch = scratch.lock().unwrap_or_else(PoisonError::into_inner);
-            scratch.work.tracer.kept()
-        };
-        self.scratch.iter().map(kept).sum()
+        let displaced = |snapshot: &Snapshot| snapshot.scene.displaced.last();
+        let displacement = self.snapshot.as_ref().and_then(displaced);
+        let micro = displacement.and_then(|displacement| displacement.micro(usize::MAX));
+        micro.map_or(0, |micro| micro.bytes())
     }
 
     /// Whether hits of the snapshot before this one serve again, so that camera rays are saved.

@@ -18,6 +18,7 @@ const DOORS: [(&str, &[&str]); 18] = [
         &[
             "geometry/bvh/build",
             "scene/load",
+            "surface/displaced",
             "texture/cone_map",
             "texture/destair",
             "render",

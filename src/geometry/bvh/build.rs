@@ -9,6 +9,7 @@
 //! Source: Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies".
 
 mod bins;
+mod groups;
 mod prim;
 
 use std::ops::Range;
@@ -56,30 +57,12 @@ pub(super) fn binary_tree(mesh: &TriangleMesh, watch: Watch<'_>) -> (Option<Tree
     let mut prims: Vec<_> = (0..count)
         .into_par_iter()
         .with_min_len(PARALLEL_MIN)
-        .map(|prim| PrimRef::new(mesh, prim))
+        .map(|prim| PrimRef::new(prim, mesh.corners(prim)))
         .collect();
-    let progress = Progress {
-        watch,
-        total: prims.len(),
-        placed: AtomicUsize::new(0),
-        stopped: AtomicBool::new(!watch(0.0)),
-    };
-    if prims.is_empty() {
+    let Some(tree) = tree(&mut prims, LANES, watch) else {
         return (None, Vec::new());
-    }
-    let root = Task {
-        first: 0,
-        depth: 0,
-        bounds: box_of(&prims, |p| p.bounds()),
-        centroids: box_of(&prims, |p| Box4::EMPTY.with_point(p.centroid())),
-        progress: &progress,
     };
-    let tree = root.build(&mut prims);
-    if progress.is_stopped() {
-        return (None, Vec::new());
-    }
-    let mut leaves = Vec::with_capacity(prims.len() / (LANES / 2) + 1);
-    tree.list_leaves(&mut leaves);
+    let leaves = tree.leaves(prims.len() / (LANES / 2) + 1);
     let blocks = leaves
         .into_par_iter()
         .with_min_len(PARALLEL_MIN / LANES)
@@ -91,8 +74,53 @@ pub(super) fn binary_tree(mesh: &TriangleMesh, watch: Watch<'_>) -> (Option<Tree
     (Some(tree), blocks)
 }
 
+/// Builds the tree of blocks that are there already, and their order in a walk from left to right.
+///
+/// No tree without blocks, or once the watch said stop.
+fn block_tree(blocks: &[Block], watch: Watch<'_>) -> (Option<Tree>, Vec<u32>) {
+    let mut prims: Vec<_> = blocks
+        .par_iter()
+        .enumerate()
+        .with_min_len(PARALLEL_MIN)
+        .map(|(i, block)| {
+            PrimRef::new(i as u32, block.triangles().flat_map(|(_, corners)| corners))
+        })
+        .collect();
+    let tree = tree(&mut prims, 1, watch);
+    (tree, prims.iter().map(PrimRef::index).collect())
+}
+
+/// Orders boxes into a tree with up to `leaf_size` in a leaf.
+fn tree(prims: &mut [PrimRef], leaf_size: usize, watch: Watch<'_>) -> Option<Tree> {
+    let progress = Progress {
+        watch,
+        total: prims.len(),
+        placed: AtomicUsize::new(0),
+        stopped: AtomicBool::new(!watch(0.0)),
+    };
+    if prims.is_empty() {
+        return None;
+    }
+    let root = Task {
+        first: 0,
+        depth: 0,
+        leaf_size,
+        bounds: box_of(prims, |p| p.bounds()),
+        centroids: box_of(prims, |p| Box4::EMPTY.with_point(p.centroid())),
+        progress: &progress,
+    };
+    let tree = root.build(prims);
+    (!progress.is_stopped()).then_some(tree)
+}
+
 impl Tree {
-    /// Ranges of all leaves from left to right.
+    /// Ranges of all leaves from left to right, about `count`.
+    fn leaves(&self, count: usize) -> Vec<Range<u32>> {
+        let mut leaves = Vec::with_capacity(count);
+        self.list_leaves(&mut leaves);
+        leaves
+    }
+
     fn list_leaves(&self, leaves: &mut Vec<Range<u32>>) {
         match &self.content {
             Content::Leaf(range) => leaves.push(range.start as u32..range.end as u32),
@@ -127,6 +155,8 @@ struct Task<'a> {
     /// Where the part begins in the whole list.
     first: usize,
     depth: u32,
+    /// Most triangles in a leaf.
+    leaf_size: usize,
     bounds: Box4,
     centroids: Box4,
     progress: &'a Progress<'a>,
@@ -153,6 +183,7 @@ impl<'a> Task<'a> {
         let child = |first, side| Task {
             first,
             depth: self.depth + 1,
+            leaf_size: self.leaf_size,
             bounds: parts.bounds[side],
             centroids: parts.centroids[side],
             progress: self.progress,
@@ -192,7 +223,7 @@ impl<'a> Task<'a> {
         let plane = (self.depth < MAX_SAH_DEPTH)
             .then(|| grid.best_plane(prims))
             .flatten();
-        if prims.len() <= LANES {
+        if prims.len() <= self.leaf_size {
             let area = self.bounds.half_area();
             let split_cost = plane.map_or(f32::INFINITY, |p| area + p.cost);
             if leaf_cost(prims.len() as u32, area) <= split_cost || split_cost.is_nan() {

@@ -4,31 +4,37 @@ use super::build::{Content, Tree};
 use super::node::{ChildRef, Node};
 use crate::geometry::triangle::LANES;
 
-/// Nodes of a collapsed tree, children in depth-first order, and its root. Leaves are numbered from left to
-/// right. Without a tree there is no root.
-pub(super) fn collapse(tree: Option<&Tree>, leaves: usize) -> (Vec<Node>, ChildRef) {
+/// Nodes of a collapsed tree, children in depth-first order, and its root. `block_of` says where the block of a leaf
+/// is, leaves counted from left to right. Without a tree there is no root.
+pub(super) fn collapse(
+    tree: Option<&Tree>,
+    leaves: usize,
+    block_of: &dyn Fn(usize) -> usize,
+) -> (Vec<Node>, ChildRef) {
     let mut wide = Wide {
         // Grids have 0.29 nodes a leaf, scans and buildings up to 0.4.
         nodes: Vec::with_capacity(leaves / 2),
         leaves: 0,
+        block_of,
     };
     let root = tree.map_or(ChildRef::EMPTY, |tree| wide.add(tree));
     wide.nodes.shrink_to_fit();
     (wide.nodes, root)
 }
 
-struct Wide {
+struct Wide<'a> {
     nodes: Vec<Node>,
     /// Leaves met so far.
     leaves: usize,
+    block_of: &'a dyn Fn(usize) -> usize,
 }
 
-impl Wide {
+impl Wide<'_> {
     fn add(&mut self, tree: &Tree) -> ChildRef {
         match &tree.content {
             Content::Leaf(_) => {
                 self.leaves += 1;
-                ChildRef::block(self.leaves - 1)
+                ChildRef::block((self.block_of)(self.leaves - 1))
             }
             Content::Inner(halves) => {
                 let index = self.nodes.len();

@@ -69,20 +69,8 @@ impl Bvh {
         mesh: &TriangleMesh,
         watch: &(dyn Fn(f32) -> Result<(), E> + Sync),
     ) -> Result<Self, E> {
-        let stopped = OnceLock::new();
-        let go_on = |share| match watch(share) {
-            Ok(()) => true,
-            Err(error) => {
-                // Only the first is returned.
-                let _ = stopped.set(error);
-                false
-            }
-        };
-        let (tree, blocks) = build::binary_tree(mesh, &go_on);
-        if let Some(error) = stopped.into_inner() {
-            return Err(error);
-        }
-        let (nodes, root) = collapse::collapse(tree.as_ref(), blocks.len());
+        let (tree, blocks) = watched(watch, |go_on| build::binary_tree(mesh, go_on))?;
+        let (nodes, root) = collapse::collapse(tree.as_ref(), blocks.len(), &|leaf| leaf);
         let bounds = tree.map_or(Aabb::EMPTY, |tree| tree.bounds);
         let reach = if bounds.is_empty() {
             0.0
@@ -158,4 +146,22 @@ impl Bvh {
             && self.nodes == other.nodes
             && same_blocks(&self.blocks, &other.blocks)
     }
+}
+
+/// Calls `build` with a watch that says whether to go on, and returns the first error of `watch` instead of what was
+/// built.
+fn watched<T, E: Send + Sync>(
+    watch: &(dyn Fn(f32) -> Result<(), E> + Sync),
+    build: impl FnOnce(&(dyn Fn(f32) -> bool + Sync)) -> T,
+) -> Result<T, E> {
+    let stopped = OnceLock::new();
+    let built = build(&|share| match watch(share) {
+        Ok(()) => true,
+        Err(error) => {
+            // Only the first is returned.
+            let _ = stopped.set(error);
+            false
+        }
+    });
+    stopped.into_inner().map_or(Ok(built), Err)
 }

@@ -8,6 +8,10 @@ use super::{Corners8, LANES, TriangleHit, TriangleTest, corners_of, take_lowest}
 use crate::geometry::lanes::F32x8;
 use crate::geometry::slabs::{larger, smaller};
 use crate::geometry::{Ray, RaySlabs};
+use crate::math::Real as _;
+use crate::math::lanes::Lanes;
+use crate::math::simd::{Simd, SimdBase as _, SimdMask as _};
+use crate::math::wide::Wide;
 
 /// A coordinate axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -209,6 +213,53 @@ impl Watertight {
         let u = smaller(larger(u, 0.0), 1.0);
         let v = smaller(larger(v, 0.0), 1.0 - u);
         (near <= far && t > 0.0).then_some(TriangleHit { t, u, v })
+    }
+}
+
+impl Watertight {
+    /// Which of sixteen triangles the ray may pass inside of, on either side of its origin, as bits: all that it does,
+    /// and those that [`TriangleTest::intersect`] must look at twice. Corners are given by their places among
+    /// `points`.
+    #[inline(always)]
+    pub(crate) fn may_pass<S: Simd>(
+        &self,
+        simd: S,
+        points: &[Lanes<f32, 16>; 3],
+        corners: &[[usize; 16]; 3],
+    ) -> u64 {
+        let [x, y, z] = self.along.last(points.each_ref());
+        let wide = |value: f32| Wide::new(simd, value);
+        let [ox, oy, oz] = self.origin;
+        let (ox, oy) = (wide(ox), wide(oy));
+        let (shear_x, shear_y) = (wide(self.shear[0]), wide(self.shear[1]));
+        let mut flat: [Lanes<f32, 16>; 2] = [Lanes::splat(0.0); 2];
+        for group in 0..16 / S::f32s::LEN {
+            let z = z.get(simd, group) - oz;
+            flat[0].set(group, sheared(x.get(simd, group), ox, shear_x, z));
+            flat[1].set(group, sheared(y.get(simd, group), oy, shear_y, z));
+        }
+        let mut placed: [[Lanes<f32, 16>; 2]; 3] = [[Lanes::splat(0.0); 2]; 3];
+        for k in 0..3 {
+            for axis in 0..2 {
+                for i in 0..16 {
+                    placed[k][axis].0[i] = flat[axis].0[corners[k][i] % 16];
+                }
+            }
+        }
+        let mut bits = 0;
+        for group in 0..16 / S::f32s::LEN {
+            let [[ax, ay], [bx, by], [cx, cy]] = &placed;
+            let a = [ax.get(simd, group), ay.get(simd, group)];
+            let b = [bx.get(simd, group), by.get(simd, group)];
+            let c = [cx.get(simd, group), cy.get(simd, group)];
+            let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
+            let zero = Wide::new(simd, 0.0);
+            let above = u.ge(zero) & v.ge(zero) & w.ge(zero);
+            let below = u.le(zero) & v.le(zero) & w.le(zero);
+            let on_edge = u.eq(zero) | v.eq(zero) | w.eq(zero);
+            bits |= (above | below | on_edge).0.to_bitmask() << (group * S::f32s::LEN);
+        }
+        bits
     }
 }
 

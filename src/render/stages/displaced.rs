@@ -23,7 +23,6 @@ pub fn closest_hits(
     for place in places.iter() {
         tracer.push_for(place, rays.lanes.ray(place), rays.lanes.t_max.0[place]);
     }
-    tracer.keep(displaced.memory / rayon::current_num_threads());
     tracer.run(mesh, Search::Closest, frame.level);
     counters.relief_steps += tracer.steps();
     let mut lanes = hits.displaced.take().unwrap_or_default();

@@ -1,13 +1,14 @@
-//! Which displaced triangles are flat reliefs, and how fine the others are cut up.
+//! Which displaced triangles are flat reliefs, and how the others are cut up.
 
 use glam::{DVec3, Vec3};
 
 use super::Reliefs;
 use super::fine::Cut;
+use super::pieces::{self, Cutting, Piece};
 use super::seams::Seams;
 use crate::geometry::TriangleMesh;
 
-/// How a displaced triangle is traced.
+/// How a piece of a displaced triangle is traced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
     /// Its displacement normal is constant: a height field over a flat chart.
@@ -23,19 +24,16 @@ const SAME_DIRECTION: f64 = 1e-5;
 /// A triangle this nearly along its displacement normal (sine) is no height field.
 const MIN_SLOPE: f64 = 1e-3;
 
-/// Finest cut: 2¹⁵ segments, 16,384 texels along an edge.
-const MAX_SEGMENTS_LOG2: u8 = 15;
-
-/// What each displaced triangle is. Triangles that hang together by a corner are all flat, or all cut up
-/// with as many segments along every edge, so that no crack opens between them. Flat parts get their mean
+/// What displaced triangles fall into. Triangles that hang together by a corner are all flat, or all cut up, their
+/// pieces with as many segments along every edge, so that no crack opens between them. Flat parts get their mean
 /// normal.
-pub fn shapes(
+pub fn pieces(
     mesh: &TriangleMesh,
     reliefs: &Reliefs<'_, '_>,
     prims: &[u32],
     (places, seams): (&[u32], &Seams),
     normals: &mut [Vec3],
-) -> Vec<Shape> {
+) -> Vec<Piece> {
     let parts = parts(mesh, prims, places);
     let count = parts.iter().map(|part| part + 1).max().unwrap_or(0) as usize;
     let mut sums = vec![DVec3::ZERO; count];
@@ -68,25 +66,42 @@ pub fn shapes(
             }
         }
     }
-    let shape = |(&prim, &part): (&u32, &u32)| {
-        if is_flat[part as usize] {
-            Shape::Flat
-        } else {
-            Shape::Fine(Cut {
-                segments_log2: segments_log2(texels[part as usize]),
-                on_seam: seams.touches(prim),
-            })
+    let is_fine = |part: u32| !is_flat[part as usize];
+    let both = || prims.iter().copied().zip(parts.iter().copied());
+    let fine: Vec<u32> = both()
+        .filter(|(_, part)| is_fine(*part))
+        .map(|(prim, _)| prim)
+        .collect();
+    let cutting = Cutting::new(mesh, reliefs, &fine, places);
+    let mut pieces = Vec::with_capacity(prims.len());
+    for (prim, part) in both() {
+        if !is_fine(part) {
+            pieces.push(Piece {
+                prim,
+                shape: Shape::Flat,
+                order: [0, 1, 2],
+                corners: pieces::ALL,
+            });
+            continue;
         }
-    };
-    prims.iter().zip(&parts).map(shape).collect()
-}
-
-/// At least two segments for each texel along an edge.
-fn segments_log2(texels: f64) -> u8 {
-    let segments = (2.0 * texels)
-        .ceil()
-        .clamp(4.0, f64::from(1 << MAX_SEGMENTS_LOG2));
-    (segments as u32).next_power_of_two().ilog2() as u8
+        let segments_log2 = pieces::segments_log2(texels[part as usize].min(cutting.length()));
+        let on_seam = seams.touches(prim);
+        let order = pieces::order(mesh, prim);
+        cutting.cut(mesh, reliefs, prim, places, |corners| {
+            let on_seam = on_seam && pieces::is_at_border(corners);
+            pieces.push(Piece {
+                prim,
+                shape: Shape::Fine(Cut {
+                    segments_log2,
+                    on_seam,
+                }),
+                order,
+                corners,
+            });
+            true
+        });
+    }
+    pieces
 }
 
 /// Length of a triangle's longest edge in texels.

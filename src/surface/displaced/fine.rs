@@ -1,21 +1,32 @@
-//! A displaced triangle cut into micro-triangles, none of which is stored.
+//! A piece of a displaced triangle cut into micro-triangles, none of which is stored.
 //!
-//! A triangle of `2^k` segments falls into sixteen of `2^(k−2)`, and so on down to four segments, whose
-//! sixteen micro-triangles are made on the spot. The boxes of sixteen parts are made when a ray first comes by, those
-//! that it meets are narrowed to their own heights, and all are kept as long as there is room: a part with heights in
-//! `[low, high]` lies in the hull of its corners at both.
+//! A piece of `2^k` segments falls into sixteen parts of `2^(k−2)`, and so on down to four segments, whose
+//! sixteen micro-triangles are made on the spot. So are the bounds of sixteen parts, all at once in vector lanes, in
+//! coordinates of the piece's own (`local`). Keeping bounds was tried: they come back from memory no sooner than they
+//! are made again, because neighbouring pixels see other parts of a fine map.
 
 use glam::{Vec2, Vec3};
 
-use super::nodes::{Node, NodeCache, PARTS, Row};
+use super::charts::Shape;
+use super::local::LocalRay;
+use super::pieces::{Piece, WHOLE};
 use super::trace::SurfaceHit;
 use super::{Displacement, Reliefs, seams};
 use crate::geometry::triangle::{Corners8, LANES, TriangleTest as _, Watertight};
 use crate::geometry::{Ray, RaySlabs, TriangleMesh};
-use crate::math::lanes::ones;
-use crate::math::simd::{Simd, SimdBase as _};
-use crate::math::{Real as _, V2, gamma};
+use crate::math::lanes::{Lanes, ones};
+use crate::math::simd::{Simd, SimdBase as _, SimdMask as _};
+use crate::math::{Real, V2, gamma};
 use crate::surface::mapping::relief::ReliefField;
+
+/// Parts that a part falls into.
+pub const PARTS: usize = 16;
+
+/// A number for each part.
+type Row = Lanes<f32, PARTS>;
+
+/// Which part of which piece: anchor and signed size in segments.
+pub type PartKey = (u32, [i32; 3]);
 
 /// Anchor and signed size of the sixteen parts of a triangle with four segments: corners
 /// `(a, b)`, `(a + s, b)`, `(a, b + s)`. A negative size is a triangle turned by half a turn.
@@ -35,6 +46,23 @@ const fn cut() -> [[i32; 3]; PARTS] {
         i += 1;
     }
     parts
+}
+
+/// The same, `[anchor, anchor, size][part]`.
+const CUTS: [Row; 3] = cuts();
+
+const fn cuts() -> [Row; 3] {
+    let mut rows = [Row::splat(0.0); 3];
+    let mut i = 0;
+    while i < PARTS {
+        let mut k = 0;
+        while k < 3 {
+            rows[k].0[i] = CUT[i][k] as f32;
+            k += 1;
+        }
+        i += 1;
+    }
+    rows
 }
 
 /// Vertices of a triangle with four segments.
@@ -63,9 +91,27 @@ const fn vertex(a: i32, b: i32) -> usize {
     (a + b * 5 - b * (b - 1) / 2) as usize
 }
 
-/// A displaced triangle, its corners in an order that its neighbours share.
+/// The vertices of its sixteen triangles, `[corner][triangle]`.
+const TRIANGLES: [[usize; PARTS]; 3] = triangles();
+
+const fn triangles() -> [[usize; PARTS]; 3] {
+    let mut vertices = [[0; PARTS]; 3];
+    let mut i = 0;
+    while i < PARTS {
+        let [a, b, s] = CUT[i];
+        vertices[0][i] = vertex(a, b);
+        vertices[1][i] = vertex(a + s, b);
+        vertices[2][i] = vertex(a, b + s);
+        i += 1;
+    }
+    vertices
+}
+
+/// A piece of a displaced triangle, the triangle's corners in an order that its neighbours share.
 #[derive(Debug, Clone, Copy)]
 pub struct Patch<'a, 'm> {
+    /// Index of the piece.
+    piece: u32,
     prim: u32,
     field: &'a ReliefField<'m>,
     /// Which corner of the triangle each is.
@@ -73,21 +119,26 @@ pub struct Patch<'a, 'm> {
     p: [Vec3; 3],
     n: [Vec3; 3],
     uv: [Vec2; 3],
+    /// Weights of the triangle's second and third corner at the piece's first, and their changes to its others.
+    frame: [[f32; 2]; 3],
     cut: Cut,
 }
 
-/// How a triangle is cut up.
+/// How a piece is cut up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cut {
     /// Every edge falls into 2 to the power of this segments; at least 2.
     pub segments_log2: u8,
-    /// Whether a corner lies on a seam.
+    /// Whether it reaches an edge or a corner of its triangle that may lie on a seam.
     pub on_seam: bool,
 }
 
-/// A ray made ready for all patches.
+/// A ray made ready for all pieces.
 #[derive(Debug)]
 pub struct FineRay {
+    pub ray: Ray,
+    /// Larger than any coordinate of the surface and of the ray's origin.
+    pub reach: f32,
     test: Watertight,
     slabs: RaySlabs,
 }
@@ -95,6 +146,8 @@ pub struct FineRay {
 impl FineRay {
     pub fn new(ray: &Ray, reach: f32) -> Self {
         Self {
+            ray: *ray,
+            reach: reach + ray.origin.abs().max_element(),
             test: Watertight::new(ray),
             slabs: RaySlabs::new(ray, reach),
         }
@@ -107,151 +160,107 @@ struct Part {
     a: i32,
     b: i32,
     size: i32,
-    /// Displacements within; means nothing for those that are made into micro-triangles next.
-    range: [f32; 2],
     /// Where the ray enters its box.
     near: f32,
 }
 
 impl<'a, 'm> Patch<'a, 'm> {
-    /// `None` for a triangle without a relief.
+    /// `None` for a piece without a relief, and for one that is flat.
     #[inline]
     pub fn new(
         mesh: &TriangleMesh,
-        reliefs: &Reliefs<'a, 'm>,
-        displacement: &Displacement,
-        (prim, cut): (u32, Cut),
+        (reliefs, displacement): Door<'a, 'm>,
+        piece: u32,
     ) -> Option<Self> {
+        let Piece {
+            prim,
+            shape,
+            order,
+            corners,
+        } = displacement.pieces[piece as usize];
+        let Shape::Fine(cut) = shape else {
+            return None;
+        };
         let material = usize::from(mesh.attributes[prim as usize].material);
         let field = reliefs.fields.get(material)?.as_ref()?;
         let vertices = mesh.indices[prim as usize];
-        let corners = mesh.corners(prim);
-        let mut order = [0, 1, 2];
-        // By place: both triangles at an edge weigh its ends in the same order, so that their vertices there
-        // have the same bits.
-        let key = |k: &usize| corners[*k].to_array();
-        order.sort_by(|a, b| {
-            let (a, b) = (key(a), key(b));
-            a.partial_cmp(&b).unwrap_or(std::cmp::Ordering::Equal)
-        });
-        let p = order.map(|k| corners[k]);
-        let n = order.map(|k| displacement.normals[vertices[k] as usize]);
-        let uv = order.map(|k| mesh.uvs[vertices[k] as usize]);
+        let order = order.map(usize::from);
+        let p = mesh.corners(prim);
+        let [c0, c1, c2] = corners.map(|w| w.map(|w| f32::from(w) / f32::from(WHOLE)));
+        let way = |c: [f32; 2]| [c[0] - c0[0], c[1] - c0[1]];
         Some(Self {
+            piece,
             prim,
             field,
             order,
-            p,
-            n,
-            uv,
+            p: order.map(|k| p[k]),
+            n: order.map(|k| displacement.normals[vertices[k] as usize]),
+            uv: order.map(|k| mesh.uvs[vertices[k] as usize]),
+            frame: [c0, way(c1), way(c2)],
             cut,
         })
     }
 
-    /// Smallest and largest displacement in a part.
-    fn range_of(&self, reliefs: &Reliefs<'_, '_>, [a, b, size]: [i32; 3]) -> [f32; 2] {
-        let segments = 1 << self.cut.segments_log2;
-        // On a seam's edge heights are means with what lies on its other side.
-        let touches = |a: i32, b: i32, size: i32| {
-            let sums = [a + b, a + b + size];
-            a.min(a + size) == 0 || b.min(b + size) == 0 || sums.contains(&segments)
-        };
-        if self.cut.on_seam && touches(a, b, size) {
-            return seams::range(reliefs).map(|d| d as f32);
-        }
-        let per_segment = 1.0 / f64::from(segments);
-        let place = |a: i32, b: i32| {
-            let [w1, w2] = [a, b].map(|i| f64::from(i) * per_segment);
-            let uv = |k: usize| {
-                let [t0, t1, t2] = self.uv.map(|uv| f64::from(uv.to_array()[k]));
-                t0 + (t1 - t0) * w1 + (t2 - t0) * w2
-            };
-            self.field.texels_from_uv([uv(0), uv(1)])
-        };
-        let places = [place(a, b), place(a + size, b), place(a, b + size)];
-        let [low, high] = self.field.range_near(places);
-        // Heights are made in f32.
-        let margin = (low.abs().max(high.abs()) * 1e-6) as f32;
-        [low as f32 - margin, high as f32 + margin]
+    /// Weights of the triangle's corners at a place in the piece, given as shares of the ways to its second and third
+    /// corner. Nothing is rounded: all are multiples of 2⁻²⁴.
+    #[inline(always)]
+    fn weights<F: Real>(&self, [a, b]: [F; 2]) -> [F; 3] {
+        let [[w1, w2], [to1, to2], [on1, on2]] = self.frame;
+        let w1 = a * to1 + b * on1 + w1;
+        let w2 = a * to2 + b * on2 + w2;
+        [a.splat(1.0) - w1 - w2, w1, w2]
     }
 
-    /// The sixteenths of a part in boxes that hold all heights of the whole part.
+    /// Length of a segment as a share of the piece's edges.
     #[inline(always)]
-    fn node<S: Simd>(&self, simd: S, door: Door<'_, '_>, part: &Part) -> Node {
-        let quarter = part.size / 4;
-        let per_segment = 1.0 / (1 << self.cut.segments_log2) as f32;
-        let mut places = [Row::splat(0.0); 3];
-        for (i, [a, b, s]) in CUT.into_iter().enumerate() {
-            places[0].0[i] = (part.a + a * quarter) as f32 * per_segment;
-            places[1].0[i] = (part.b + b * quarter) as f32 * per_segment;
-            places[2].0[i] = (s * quarter) as f32 * per_segment;
-        }
-        let margin = margin(door);
-        let [low, high] = part.range;
-        let mut boxes = [[Row::splat(0.0); 2]; 3];
-        for group in 0..PARTS / S::f32s::LEN {
-            let [a, b, s] = [0, 1, 2].map(|k| places[k].get(simd, group));
-            let one = a.splat(1.0);
-            for axis in 0..3 {
-                let (p, n) = (self.p.map(|p| p[axis]), self.n.map(|n| n[axis]));
-                let mut least = one.splat(f32::INFINITY);
-                let mut most = one.splat(f32::NEG_INFINITY);
-                for [w1, w2] in [[a, b], [a + s, b], [a, b + s]] {
-                    let w = [one - w1 - w2, w1, w2];
-                    let (p, n) = (sum(w, p), sum(w, n));
-                    let (x, y) = (p + n * low, p + n * high);
-                    least = least.smaller(x).smaller(y);
-                    most = most.larger(x).larger(y);
-                }
-                boxes[axis][0].set(group, least - margin);
-                boxes[axis][1].set(group, most + margin);
-            }
-        }
-        Node {
-            boxes,
-            ranges: [low, high].map(Row::splat),
-            refined: 0,
-        }
+    fn per_segment(&self) -> f32 {
+        1.0 / (1 << self.cut.segments_log2) as f32
     }
 
-    /// Gives one of the sixteenths of a part the box of its own heights.
+    /// Smallest and largest displacements in the sixteen parts of a part; `places` are anchors and sizes as shares of
+    /// the piece's edges.
     #[inline(always)]
-    fn refine<S: Simd>(&self, simd: S, door: Door<'_, '_>, part: &Part, i: usize, node: &mut Node) {
-        let quarter = part.size / 4;
-        let [a, b, s] = CUT[i].map(|x| x * quarter);
-        let [a, b, s] = [part.a + a, part.b + b, s];
-        if s.abs() == 4 {
-            let points = self.leaf_points(simd, door, [a, b, s]);
-            for (axis, row) in points.iter().enumerate() {
-                let [low, high] = extremes(&row.0);
-                node.boxes[axis][0].0[i] = low;
-                node.boxes[axis][1].0[i] = high;
+    fn ranges<F: Real>(&self, reliefs: &Reliefs<'_, '_>, [a, b, s]: [F; 3]) -> [F; 2] {
+        let corners = [
+            self.weights([a, b]),
+            self.weights([a + s, b]),
+            self.weights([a, b + s]),
+        ];
+        let [x, y, z] = corners;
+        let [mut low, mut high] =
+            self.field
+                .ranges_near([self.uv_at(x), self.uv_at(y), self.uv_at(z)]);
+        if self.cut.on_seam {
+            // On a seam's edge heights are means with what lies on its other side.
+            let zero = low.splat(0.0);
+            let [all_low, all_high] = seams::range(reliefs);
+            for w in corners.into_iter().flatten() {
+                low = F::select(w.eq(zero), zero.splat(all_low as f32), low);
+                high = F::select(w.eq(zero), zero.splat(all_high as f32), high);
             }
-            return;
         }
-        let [low, high] = self.range_of(door.0, [a, b, s]);
-        // Within those of the whole, so that what is met does not depend on what was refined before.
-        let range = [low.max(part.range[0]), high.min(part.range[1])];
-        for (row, d) in node.ranges.iter_mut().zip(range) {
-            row.0[i] = d;
-        }
-        let per_segment = 1.0 / (1 << self.cut.segments_log2) as f32;
-        let margin = margin(door);
-        for axis in 0..3 {
-            let (p, n) = (self.p.map(|p| p[axis]), self.n.map(|n| n[axis]));
-            let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
-            for [a, b] in [[a, b], [a + s, b], [a, b + s]] {
-                let (w1, w2) = (a as f32 * per_segment, b as f32 * per_segment);
-                let w = [1.0 - w1 - w2, w1, w2];
-                let (p, n) = (sum(w, p), sum(w, n));
-                for d in range {
-                    least = least.min(p + n * d);
-                    most = most.max(p + n * d);
-                }
-            }
-            node.boxes[axis][0].0[i] = least - margin;
-            node.boxes[axis][1].0[i] = most + margin;
-        }
+        [low, high]
+    }
+
+    /// The ray in the piece's own coordinates.
+    pub fn local_ray(&self, ray: &FineRay) -> LocalRay {
+        let [p, n] = [self.p, self.n].map(|corners| {
+            let [c0, c1, c2] = corners.map(|c| c.as_dvec3());
+            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|place: [f32; 2]| {
+                let [w0, w1, w2] = self.weights(place).map(f64::from);
+                c0 * w0 + c1 * w1 + c2 * w2
+            })
+        });
+        LocalRay::new(ray, p, n)
+    }
+
+    /// Texture coordinate at weights of the triangle's corners.
+    #[inline(always)]
+    fn uv_at<F: Real>(&self, w: [F; 3]) -> V2<F> {
+        V2::new(
+            sum(w, self.uv.map(|uv| uv.x)),
+            sum(w, self.uv.map(|uv| uv.y)),
+        )
     }
 
     /// Makes the sixteen micro-triangles of a part with four segments and tests them.
@@ -264,70 +273,81 @@ impl<'a, 'm> Patch<'a, 'm> {
         part: &Part,
         best: &mut Best,
     ) {
-        let quarter = part.size / 4;
-        let points = self.leaf_points(simd, door, [part.a, part.b, part.size]);
+        let leaf = [part.a, part.b, part.size];
+        let points = self.leaf_points(simd, door, leaf);
+        for i in ones(ray.test.may_pass(simd, &points, &TRIANGLES)) {
+            let corners = TRIANGLES.map(|vertices| {
+                let vertex = vertices[i % PARTS] % PARTS;
+                Vec3::new(
+                    points[0].0[vertex],
+                    points[1].0[vertex],
+                    points[2].0[vertex],
+                )
+            });
+            let Some(hit) = ray.test.intersect(&ray.slabs, &corners) else {
+                continue;
+            };
+            let micro = MicroHit {
+                leaf: (self.piece, leaf),
+                part: i as u8,
+                corners,
+                weights: [hit.u, hit.v],
+            };
+            let wins_tie =
+                hit.t == best.t && best.hit.is_some_and(|known| micro.key() < known.key());
+            if hit.t < best.t || wins_tie {
+                best.t = hit.t;
+                best.hit = Some(micro);
+            }
+        }
+    }
+
+    /// The sixteen micro-triangles of a part with four segments.
+    #[inline(always)]
+    pub fn leaf_corners<S: Simd>(
+        &self,
+        simd: S,
+        door: Door<'_, '_>,
+        leaf: [i32; 3],
+    ) -> [Corners8; 2] {
+        let points = self.leaf_points(simd, door, leaf);
         let mut corners: [Corners8; 2] = [[[[0.0; LANES]; 3]; 3]; 2];
-        for (i, [a, b, s]) in CUT.into_iter().enumerate() {
-            let triangle = [vertex(a, b), vertex(a + s, b), vertex(a, b + s)];
-            for (k, index) in triangle.into_iter().enumerate() {
+        for (k, vertices) in TRIANGLES.into_iter().enumerate() {
+            for (i, vertex) in vertices.into_iter().enumerate() {
                 for axis in 0..3 {
-                    corners[i / LANES][k][axis][i % LANES] = points[axis].0[index];
+                    corners[i / LANES][k][axis][i % LANES] = points[axis].0[vertex];
                 }
             }
         }
-        for (block, corners) in corners.iter().enumerate() {
-            ray.test.intersect_block(&ray.slabs, corners, |lane, hit| {
-                let [a, b, s] = CUT[(block * LANES + lane) % PARTS].map(|x| x * quarter);
-                let key = (self.prim, [part.a + a, part.b + b, s]);
-                let wins_tie = hit.t == best.t && best.hit.is_some_and(|known| key < known.key);
-                if hit.t < best.t || wins_tie {
-                    let corner = |k: usize| {
-                        let [x, y, z] = corners[k].map(|axis| axis[lane]);
-                        Vec3::new(x, y, z)
-                    };
-                    best.t = hit.t;
-                    best.hit = Some(MicroHit {
-                        key,
-                        corners: [corner(0), corner(1), corner(2)],
-                        weights: [hit.u, hit.v],
-                    });
-                }
-                false
-            });
-        }
+        corners
     }
 
     /// Positions of the vertices of a part with four segments.
     #[inline(always)]
     fn leaf_points<S: Simd>(&self, simd: S, door: Door<'_, '_>, [a0, b0, s]: [i32; 3]) -> [Row; 3] {
         let quarter = s / 4;
-        let per_segment = 1.0 / (1 << self.cut.segments_log2) as f32;
-        let mut weights = [Row::splat(0.0); 2];
+        let per_segment = self.per_segment();
+        let mut places = [Row::splat(0.0); 2];
         for (i, [a, b]) in GRID.into_iter().enumerate() {
-            weights[0].0[i] = (a0 + a * quarter) as f32 * per_segment;
-            weights[1].0[i] = (b0 + b * quarter) as f32 * per_segment;
+            places[0].0[i] = (a0 + a * quarter) as f32 * per_segment;
+            places[1].0[i] = (b0 + b * quarter) as f32 * per_segment;
         }
         // The place that is left over repeats the last vertex.
-        for row in &mut weights {
+        for row in &mut places {
             row.0[VERTICES] = row.0[VERTICES - 1];
         }
         let mut points = [Row::splat(0.0); 3];
         for group in 0..PARTS / S::f32s::LEN {
-            let (w1, w2) = (weights[0].get(simd, group), weights[1].get(simd, group));
-            let w0 = w1.splat(1.0) - w1 - w2;
-            let uv = V2::new(
-                sum([w0, w1, w2], self.uv.map(|uv| uv.x)),
-                sum([w0, w1, w2], self.uv.map(|uv| uv.y)),
-            );
-            let d = self.field.height.displacement(uv);
+            let w = self.weights([places[0].get(simd, group), places[1].get(simd, group)]);
+            let d = self.field.height.displacement(self.uv_at(w));
             for (axis, row) in points.iter_mut().enumerate() {
-                let p = sum([w0, w1, w2], self.p.map(|p| p[axis]));
-                let n = sum([w0, w1, w2], self.n.map(|n| n[axis]));
+                let p = sum(w, self.p.map(|p| p[axis]));
+                let n = sum(w, self.n.map(|n| n[axis]));
                 row.set(group, p + n * d);
             }
         }
         if self.cut.on_seam {
-            self.mend(door, &weights, &mut points);
+            self.mend(door, &places, &mut points);
         }
         points
     }
@@ -337,12 +357,11 @@ impl<'a, 'm> Patch<'a, 'm> {
     fn mend(
         &self,
         (reliefs, displacement): Door<'_, '_>,
-        weights: &[Row; 2],
+        places: &[Row; 2],
         points: &mut [Row; 3],
     ) {
         for i in 0..VERTICES {
-            let (w1, w2) = (weights[0].0[i], weights[1].0[i]);
-            let w = [1.0 - w1 - w2, w1, w2];
+            let w = self.weights([places[0].0[i], places[1].0[i]]);
             if !w.contains(&0.0) {
                 continue;
             }
@@ -379,11 +398,11 @@ impl<'a, 'm> Patch<'a, 'm> {
             1.0
         };
         let normal = (normal.normalize_or_zero() * front).as_vec3();
-        let [a, b, size] = micro.key.1.map(|i| i as f32);
-        let per_segment = 1.0 / (1 << self.cut.segments_log2) as f32;
-        let (w1, w2) = ((a + size * u) * per_segment, (b + size * v) * per_segment);
+        let [a, b, size] = micro.place().map(|i| i as f32);
+        let per_segment = self.per_segment();
+        let place = [a + size * u, b + size * v].map(|x| x * per_segment);
         let mut weights = [0.0; 3];
-        for (k, w) in [1.0 - w1 - w2, w1, w2].into_iter().enumerate() {
+        for (k, w) in self.weights(place).into_iter().enumerate() {
             weights[self.order[k]] = w;
         }
         SurfaceHit {
@@ -412,11 +431,29 @@ pub struct Best {
 /// A micro-triangle that was hit.
 #[derive(Debug, Clone, Copy)]
 pub struct MicroHit {
-    /// Triangle, and anchor and size of the micro-triangle in it: of two at the same distance the lower
-    /// wins.
-    pub key: (u32, [i32; 3]),
-    corners: [Vec3; 3],
-    weights: [f32; 2],
+    /// The part of four segments: piece, anchor and signed size.
+    pub leaf: PartKey,
+    /// Which of its sixteen micro-triangles.
+    pub part: u8,
+    /// Corners of the micro-triangle.
+    pub corners: [Vec3; 3],
+    /// Weights of its second and third corner.
+    pub weights: [f32; 2],
+}
+
+impl MicroHit {
+    /// Of two at the same distance the lower wins.
+    const fn key(&self) -> (PartKey, u8) {
+        (self.leaf, self.part)
+    }
+
+    /// Anchor and signed size of the micro-triangle in its piece, in segments.
+    const fn place(&self) -> [i32; 3] {
+        let (_, [a, b, size]) = self.leaf;
+        let [x, y, s] = CUT[self.part as usize % PARTS];
+        let quarter = size / 4;
+        [a + x * quarter, b + y * quarter, s * quarter]
+    }
 }
 
 /// What tracing cost.
@@ -431,37 +468,39 @@ pub struct FineCounters {
 /// Everything around a patch.
 pub type Door<'a, 'm> = (&'a Reliefs<'a, 'm>, &'a Displacement);
 
-/// Meets patches one after the other.
-pub struct Meeting<'a, 'm, 'c> {
-    /// What they are parts of.
-    pub mesh: &'a TriangleMesh,
-    /// What is laid on it.
-    pub door: Door<'a, 'm>,
-    /// Displacements that no patch leaves.
-    pub range: [f32; 2],
-    /// Boxes seen so far.
-    pub nodes: &'c mut NodeCache,
-    /// Bytes that they may take.
-    pub budget: usize,
+/// Meets pieces one after the other.
+pub struct Meeting<'a, 'm> {
+    door: Door<'a, 'm>,
+    /// Kept from one to the next only so that it need not be made anew.
+    stack: [Part; STACK],
     /// What it cost.
     pub counters: FineCounters,
 }
 
-impl Meeting<'_, '_, '_> {
-    /// The hit on a triangle before `best`, if it is nearer; with `any`, whatever comes first.
+impl<'a, 'm> Meeting<'a, 'm> {
+    pub const fn new(door: Door<'a, 'm>) -> Self {
+        Self {
+            door,
+            stack: [Part::NONE; STACK],
+            counters: FineCounters {
+                parts: 0,
+                leaves: 0,
+            },
+        }
+    }
+
+    /// The hit on a piece before `best`, if it is nearer; with `any`, whatever comes first.
     #[inline(always)]
     pub fn meet<S: Simd>(
         &mut self,
         simd: S,
-        (prim, cut): (u32, Cut),
+        patch: &Patch<'_, '_>,
         ray: &FineRay,
         (mut best, any): (Best, bool),
     ) -> Best {
-        let (reliefs, displacement) = self.door;
-        let make = || Patch::new(self.mesh, reliefs, displacement, (prim, cut));
-        let mut patch = None;
-        let mut stack = [Part::NONE; STACK];
-        let mut depth = start(cut, self.range, &mut stack);
+        let (door, stack) = (self.door, &mut self.stack);
+        let local = patch.local_ray(ray);
+        let mut depth = start(patch.cut, stack);
         while depth > 0 {
             depth -= 1;
             let part = stack[depth];
@@ -470,43 +509,28 @@ impl Meeting<'_, '_, '_> {
             }
             if part.size.abs() == 4 {
                 self.counters.leaves += 1;
-                if patch.is_none() {
-                    patch = make();
-                }
-                let Some(patch) = &patch else { return best };
-                patch.meet_leaf(simd, self.door, ray, &part, &mut best);
+                patch.meet_leaf(simd, door, ray, &part, &mut best);
                 if any && best.hit.is_some() {
                     return best;
                 }
                 continue;
             }
             self.counters.parts += 1;
-            let key = (prim, [part.a, part.b, part.size]);
-            let door = self.door;
-            let index = if let Some(index) = self.nodes.find(key) {
-                index
-            } else {
-                if patch.is_none() {
-                    patch = make();
-                }
-                let Some(patch) = &patch else { return best };
-                let node = patch.node(simd, door, &part);
-                self.nodes.put(key, &node, self.budget)
-            };
-            let node = self.nodes.at(index);
             let mut near = Row::splat(0.0);
-            let mut met = ray.slabs.meets(simd, &node.boxes, best.t, &mut near);
-            let rough = met & !node.refined;
-            if rough != 0 {
-                if patch.is_none() {
-                    patch = make();
-                }
-                let Some(patch) = &patch else { return best };
-                for i in ones(rough) {
-                    patch.refine(simd, door, &part, i % PARTS, node);
-                }
-                node.refined |= rough;
-                met &= ray.slabs.meets(simd, &node.boxes, best.t, &mut near);
+            let mut met = 0;
+            let per_quarter = (part.size / 4) as f32 * patch.per_segment();
+            let [a0, b0] = [part.a, part.b].map(|i| i as f32 * patch.per_segment());
+            for group in 0..PARTS / S::f32s::LEN {
+                let [a, b, s] = &CUTS;
+                let places = [
+                    a.get(simd, group) * per_quarter + a0,
+                    b.get(simd, group) * per_quarter + b0,
+                    s.get(simd, group) * per_quarter,
+                ];
+                let range = patch.ranges(door.0, places);
+                let (entry, misses) = local.meets(places, range, best.t);
+                near.set(group, entry);
+                met |= (!misses).0.to_bitmask() << (group * S::f32s::LEN);
             }
             let first = depth;
             let quarter = part.size / 4;
@@ -517,7 +541,6 @@ impl Meeting<'_, '_, '_> {
                     a: part.a + a,
                     b: part.b + b,
                     size: s,
-                    range: [node.ranges[0].0[i], node.ranges[1].0[i]],
                     near: near.0[i],
                 };
                 let mut at = depth;
@@ -533,26 +556,47 @@ impl Meeting<'_, '_, '_> {
     }
 }
 
+/// How many parts with four segments a piece has.
+pub const fn leaf_count(cut: Cut) -> usize {
+    1 << (2 * (cut.segments_log2 as usize - 2))
+}
+
+/// Anchors and signed sizes of all parts with four segments of a piece, in the order of their keys.
+pub fn leaves(cut: Cut) -> Vec<[i32; 3]> {
+    let segments = 1 << cut.segments_log2;
+    let mut leaves = Vec::new();
+    for a in (0..=segments).step_by(4) {
+        for b in (0..=segments - a).step_by(4) {
+            // Turned by half a turn, its corner is the farthest.
+            if a >= 4 && b >= 4 {
+                leaves.push([a, b, -4]);
+            }
+            if a + b < segments {
+                leaves.push([a, b, 4]);
+            }
+        }
+    }
+    leaves
+}
+
 impl Part {
     const NONE: Self = Self {
         a: 0,
         b: 0,
         size: 0,
-        range: [0.0; 2],
         near: f32::NEG_INFINITY,
     };
 }
 
-/// Puts the whole triangle on the stack, or its quarters if it would not fall into sixteenths down to four segments;
+/// Puts the whole piece on the stack, or its quarters if it would not fall into sixteenths down to four segments;
 /// returns the stack's depth.
 #[inline(always)]
-fn start(cut: Cut, range: [f32; 2], stack: &mut [Part; STACK]) -> usize {
+fn start(cut: Cut, stack: &mut [Part; STACK]) -> usize {
     let size = 1 << cut.segments_log2;
     let part = |[a, b, size]: [i32; 3]| Part {
         a,
         b,
         size,
-        range,
         ..Part::NONE
     };
     if cut.segments_log2.is_multiple_of(2) {
@@ -567,30 +611,8 @@ fn start(cut: Cut, range: [f32; 2], stack: &mut [Part; STACK]) -> usize {
     4
 }
 
-/// What rounding may do to a corner of a box, here and where vertices are made: sums of numbers of at most this size.
-#[inline(always)]
-fn margin((_, displacement): Door<'_, '_>) -> f32 {
-    displacement.tree.reach() * (16.0 * f32::EPSILON)
-}
-
-/// The smallest and the largest of numbers that are not NaN, by halves, as vectors do it.
-#[inline(always)]
-fn extremes(row: &[f32; PARTS]) -> [f32; 2] {
-    let (mut low, mut high) = (*row, *row);
-    let mut half = PARTS / 2;
-    while half > 0 {
-        for i in 0..half {
-            let (a, b) = (low[i + half], high[i + half]);
-            low[i] = if a < low[i] { a } else { low[i] };
-            high[i] = if b > high[i] { b } else { high[i] };
-        }
-        half /= 2;
-    }
-    [low[0], high[0]]
-}
-
 /// `w0·x0 + w1·x1 + w2·x2`, in this order.
 #[inline(always)]
-fn sum<F: crate::math::Real>([w0, w1, w2]: [F; 3], [x0, x1, x2]: [f32; 3]) -> F {
+fn sum<F: Real>([w0, w1, w2]: [F; 3], [x0, x1, x2]: [f32; 3]) -> F {
     w0 * x0 + w1 * x1 + w2 * x2
 }

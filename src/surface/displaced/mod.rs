@@ -7,8 +7,10 @@
 //! - `seams`: edges at which texture coordinates jump; heights are averaged along them
 //! - `charts`: which triangles are flat reliefs, and how fine the others are cut up
 //! - `flat`: where `n` is constant: the exact walk answers, nothing is cut up
-//! - `fine`: elsewhere: micro-triangles, made where rays come, from a tree that is nowhere stored
-//! - `nodes`: boxes around parts of triangles, kept for a while
+//! - `pieces`: elsewhere: which pieces of much the same size triangles fall into
+//! - `fine`: micro-triangles of pieces, made where rays come, from a tree that is nowhere stored
+//! - `local`: which of their parts a ray can meet
+//! - `micro`: the same micro-triangles all at once, in a tree of their own, where memory allows
 //! - `trace`: what a ray meets
 //! - `smooth`: the surface between the micro-triangles, for measurements
 //!
@@ -18,23 +20,29 @@
 mod charts;
 mod fine;
 mod flat;
-mod nodes;
+mod local;
+mod micro;
+mod pieces;
 mod seams;
 mod smooth;
 mod trace;
 mod weld;
 
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::Vec3;
+use rayon::prelude::*;
 
 use crate::geometry::bvh::BoxTree;
 use crate::geometry::{Aabb, TriangleMesh};
+use crate::math::simd::SimdLevel;
 use crate::surface::mapping::relief::ReliefField;
 use crate::texture::Addressing;
 
 use charts::Shape;
+use fine::Cut;
+pub use micro::MicroMesh;
+use pieces::Piece;
 pub use seams::SeamReport;
 use seams::Seams;
 pub use smooth::{SmoothHit, SmoothPoint};
@@ -62,21 +70,22 @@ impl<'m> Reliefs<'_, 'm> {
 /// The displaced triangles of a mesh, ready to be traced. Made for one set of reliefs; holds no micro-triangle.
 #[derive(Debug)]
 pub struct Displacement {
-    /// Displaced triangles, in the order of their boxes.
-    prims: Vec<u32>,
-    shapes: Vec<Shape>,
+    /// What displaced triangles fall into, in their order and in that of the boxes.
+    pieces: Vec<Piece>,
+    /// Displaced triangles: those that are walked as flat reliefs, and those that are cut up.
+    kinds: [usize; 2],
     /// Displacement normals, one for each vertex of the mesh.
     normals: Vec<Vec3>,
     seams: Seams,
     tree: BoxTree,
     /// Whether the mesh has other triangles, too.
     has_plain: bool,
-    /// Unlike that of any other displacement.
-    number: u64,
+    /// All micro-triangles, once they were asked for.
+    micro: Mutex<Option<Arc<MicroMesh>>>,
 }
 
-/// Displacements made so far.
-static MADE: AtomicU64 = AtomicU64::new(0);
+/// Fewer pieces than this are not worth a task.
+const FEW: usize = 1024;
 
 impl Displacement {
     /// Makes the reliefs ready; the same for any number of threads.
@@ -89,26 +98,74 @@ impl Displacement {
         let welded = weld::weld(mesh, &prims);
         let seams = Seams::find(mesh, reliefs, &prims, &welded.places);
         let mut normals = welded.normals;
-        let shapes = charts::shapes(
+        let pieces = charts::pieces(
             mesh,
             reliefs,
             &prims,
             (&welded.places, &seams),
             &mut normals,
         );
-        let boxes: Vec<Aabb> = prims
-            .iter()
-            .map(|&prim| prism(mesh, reliefs, &normals, prim, seams.touches(prim)))
+        let boxes: Vec<Aabb> = pieces
+            .par_iter()
+            .with_min_len(FEW)
+            .map(|piece| prism(mesh, reliefs, &normals, piece))
             .collect();
+        let flat = pieces.iter().filter(|piece| piece.shape == Shape::Flat);
+        let flat = flat.count();
         Self {
-            shapes,
+            kinds: [flat, prims.len() - flat],
+            pieces,
             normals,
             seams,
             tree: BoxTree::build(&boxes),
             has_plain: prims.len() < mesh.len(),
-            number: MADE.fetch_add(1, Ordering::Relaxed) + 1,
-            prims,
+            micro: Mutex::default(),
         }
+    }
+
+    /// All micro-triangles, if they are there and take at most `budget` bytes. More are given back.
+    #[must_use]
+    pub fn micro(&self, budget: usize) -> Option<Arc<MicroMesh>> {
+        let mut micro = self.micro.lock().unwrap_or_else(PoisonError::into_inner);
+        if micro.as_ref().is_some_and(|micro| micro.bytes() > budget) {
+            *micro = None;
+        }
+        micro.clone()
+    }
+
+    /// The same, made if they are not there yet. `None` if there is nothing to be made, if it would take more than
+    /// `budget` bytes, and once `stop` says so.
+    #[must_use]
+    pub fn make_micro(
+        &self,
+        mesh: DisplacedMesh<'_, '_>,
+        budget: usize,
+        level: SimdLevel,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Option<Arc<MicroMesh>> {
+        let known = self.micro(budget);
+        let [_, fine] = self.kinds;
+        if known.is_some() || fine == 0 || MicroMesh::bytes_for(self) > budget {
+            return known;
+        }
+        let made = Arc::new(MicroMesh::new(mesh, level, stop)?);
+        let mut micro = self.micro.lock().unwrap_or_else(PoisonError::into_inner);
+        *micro = Some(Arc::clone(&made));
+        Some(made)
+    }
+
+    /// Pieces that are cut up, and how.
+    fn cuts(&self) -> impl Iterator<Item = (u32, Cut)> {
+        let cut = |(i, piece): (usize, &Piece)| match piece.shape {
+            Shape::Flat => None,
+            Shape::Fine(cut) => Some((i as u32, cut)),
+        };
+        self.pieces.iter().enumerate().filter_map(cut)
+    }
+
+    /// Largest magnitude of a coordinate.
+    const fn reach(&self) -> f32 {
+        self.tree.reach()
     }
 
     /// Whether the mesh has triangles that are not displaced.
@@ -125,48 +182,50 @@ impl Displacement {
 
     /// Triangles that are walked as flat reliefs, and triangles that are cut up.
     #[must_use]
-    pub fn kinds(&self) -> [usize; 2] {
-        let flat = self.shapes.iter().filter(|shape| **shape == Shape::Flat);
-        let flat = flat.count();
-        [flat, self.shapes.len() - flat]
+    pub const fn kinds(&self) -> [usize; 2] {
+        self.kinds
     }
 
     /// Heap bytes, seams left out.
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.tree.bytes()
-            + size_of_val(self.prims.as_slice())
-            + size_of_val(self.shapes.as_slice())
+            + size_of_val(self.pieces.as_slice())
             + size_of_val(self.normals.as_slice())
     }
 }
 
-/// Box around everything that a triangle's relief can reach: `p + d·n` over a triangle lies in the hull of
+/// Box around everything that a piece's relief can reach: `p + d·n` over a triangle lies in the hull of
 /// its corners at the smallest and largest `d`, because it is linear in each.
-fn prism(
-    mesh: &TriangleMesh,
-    reliefs: &Reliefs<'_, '_>,
-    normals: &[Vec3],
-    prim: u32,
-    on_seam: bool,
-) -> Aabb {
+fn prism(mesh: &TriangleMesh, reliefs: &Reliefs<'_, '_>, normals: &[Vec3], piece: &Piece) -> Aabb {
+    let prim = piece.prim;
     let Some(field) = reliefs.on(mesh, prim) else {
         return Aabb::EMPTY;
     };
-    let corners = mesh.indices[prim as usize].map(|i| i as usize);
-    let [low, high] = if on_seam {
+    let vertices = mesh.indices[prim as usize];
+    let order = piece.order.map(|k| vertices[usize::from(k)] as usize);
+    let corners = piece.corners.map(pieces::shares);
+    let at = |w: [f32; 3], [a, b, c]: [Vec3; 3]| a * w[0] + b * w[1] + c * w[2];
+    let [low, high] = if matches!(piece.shape, Shape::Fine(cut) if cut.on_seam) {
         seams::range(reliefs)
     } else {
-        let places = corners.map(|i| field.texels_from_uv(mesh.uvs[i].to_array().map(f64::from)));
+        let texels = order.map(|i| field.texels_from_uv(mesh.uvs[i].to_array().map(f64::from)));
+        let [a, b, c] = texels;
+        let places = corners.map(|w| {
+            let [w0, w1, w2] = w.map(f64::from);
+            [0, 1].map(|k| a[k] * w0 + b[k] * w1 + c[k] * w2)
+        });
         field.range_near(places)
     };
     let ends = [low as f32, high as f32];
-    let points = corners
-        .into_iter()
-        .flat_map(|i| ends.map(|d| mesh.positions[i] + normals[i] * d));
+    let points = corners.into_iter().flat_map(|w| {
+        let p = at(w, order.map(|i| mesh.positions[i]));
+        let n = at(w, order.map(|i| normals[i]));
+        ends.map(|d| p + n * d)
+    });
     let hull = Aabb::from_points(points);
     // A few roundings of the points within.
-    let margin = hull.min.abs().max(hull.max.abs()) * (8.0 * f32::EPSILON);
+    let margin = hull.min.abs().max(hull.max.abs()) * (16.0 * f32::EPSILON);
     Aabb {
         min: hull.min - margin,
         max: hull.max + margin,

@@ -3,11 +3,14 @@
 use glam::Vec3;
 
 use super::charts::Shape;
-use super::fine::{Best, Cut, FineCounters, FineRay, Meeting, Patch};
+use super::fine::{Best, FineCounters, FineRay, Meeting, Patch};
 use super::flat::FlatPrism;
-use super::nodes::NodeCache;
-use super::{Displacement, Reliefs, seams};
-use crate::geometry::{Ray, TriangleMesh};
+use super::micro::MicroMesh;
+use super::pieces::Piece;
+use super::{Displacement, Reliefs};
+use crate::geometry::bvh::AcceptAll;
+use crate::geometry::triangle::Watertight;
+use crate::geometry::{Hit, Ray, TriangleMesh};
 use crate::math::simd::{Kernel, Simd, SimdLevel};
 use crate::surface::SurfaceInteraction;
 use crate::surface::mapping::relief::{ReliefRay, Walk};
@@ -54,10 +57,9 @@ pub enum Search {
 struct Asked {
     /// Whose ray it is.
     place: usize,
-    ray: Ray,
     best: Best,
-    /// Triangle of the micro-triangle that was met.
-    fine: Option<(u32, Cut)>,
+    /// Whether a micro-triangle is in the way, where nobody asks which.
+    blocked: bool,
     /// Triangle of the flat relief that was met, and the distance in doubles.
     flat: Option<(u32, f64)>,
     /// Steps of walks, and parts cut up or made.
@@ -76,32 +78,18 @@ struct Job {
 }
 
 /// Traces rays against a displaced mesh. Keeps its lists, so that the steady state allocates nothing.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Tracer {
     asked: Vec<Asked>,
+    /// The rays asked for, and where they end.
+    rays: Vec<Ray>,
+    ends: Vec<f32>,
+    hits: Vec<Option<Hit>>,
+    blocked: Vec<bool>,
     jobs: Vec<Job>,
-    rays: Vec<ReliefRay>,
+    relief_rays: Vec<ReliefRay>,
     walks: Vec<Walk>,
-    nodes: NodeCache,
-    /// Bytes that the boxes kept may take.
-    budget: usize,
 }
-
-impl Default for Tracer {
-    fn default() -> Self {
-        Self {
-            asked: Vec::new(),
-            jobs: Vec::new(),
-            rays: Vec::new(),
-            walks: Vec::new(),
-            nodes: NodeCache::default(),
-            budget: USUAL_BUDGET,
-        }
-    }
-}
-
-/// Bytes that a tracer keeps boxes in unless told otherwise.
-const USUAL_BUDGET: usize = 64 << 20;
 
 /// What is traced.
 #[derive(Debug, Clone, Copy)]
@@ -112,6 +100,8 @@ pub struct DisplacedMesh<'a, 'm> {
     pub reliefs: Reliefs<'a, 'm>,
     /// What was made of both.
     pub displacement: &'a Displacement,
+    /// All its micro-triangles, if there was memory for them; otherwise they are made on the way.
+    pub micro: Option<&'a MicroMesh>,
 }
 
 impl DisplacedMesh<'_, '_> {
@@ -141,26 +131,11 @@ impl DisplacedMesh<'_, '_> {
 }
 
 impl Tracer {
-    /// Sets how many bytes the boxes of parts may take that are kept for later rays. Less makes tracing slower and
-    /// changes nothing else.
-    pub const fn keep(&mut self, budget: usize) {
-        self.budget = budget;
-    }
-
-    /// Heap bytes of the boxes that are kept.
-    #[must_use]
-    pub const fn kept(&self) -> usize {
-        self.nodes.bytes()
-    }
-
-    /// Gives back what is kept for later rays.
-    pub fn forget(&mut self) {
-        self.nodes = NodeCache::default();
-    }
-
     /// Forgets all rays.
     pub fn clear(&mut self) {
         self.asked.clear();
+        self.rays.clear();
+        self.ends.clear();
     }
 
     /// Adds a ray that ends at `t_max`.
@@ -170,14 +145,15 @@ impl Tracer {
 
     /// Adds the ray of a place, to be told apart in [`Self::steps_by_place`].
     pub fn push_for(&mut self, place: usize, ray: Ray, t_max: f32) {
+        self.rays.push(ray);
+        self.ends.push(t_max);
         self.asked.push(Asked {
             place,
-            ray,
             best: Best {
                 t: t_max,
                 hit: None,
             },
-            fine: None,
+            blocked: false,
             flat: None,
             steps: 0,
         });
@@ -197,13 +173,48 @@ impl Tracer {
     /// Finds what all rays meet.
     pub fn run(&mut self, mesh: DisplacedMesh<'_, '_>, search: Search, level: SimdLevel) {
         self.jobs.clear();
-        self.nodes.prepare(mesh.displacement.number, self.budget);
-        level.run_or_plain(Visit {
-            mesh,
-            search,
-            tracer: self,
-        });
-        self.walk(mesh, level);
+        if let Some(micro) = mesh.micro {
+            self.meet_all(micro, search);
+        }
+        let [flat, _] = mesh.displacement.kinds();
+        if mesh.micro.is_none() || flat > 0 {
+            level.run_or_plain(Visit {
+                mesh,
+                search,
+                tracer: self,
+            });
+            self.walk(mesh, level);
+        }
+    }
+
+    /// What the rays meet of micro-triangles that are all there.
+    fn meet_all(&mut self, micro: &MicroMesh, search: Search) {
+        let (bvh, count) = (micro.bvh(), self.rays.len());
+        match search {
+            Search::Closest => {
+                self.hits.clear();
+                self.hits.resize(count, None);
+                let hits = &mut self.hits;
+                bvh.intersect_many::<Watertight, _>(&self.rays, &self.ends, &AcceptAll, hits);
+                for (asked, hit) in self.asked.iter_mut().zip(hits) {
+                    if let Some(hit) = hit {
+                        asked.best = Best {
+                            t: hit.t,
+                            hit: Some(micro.micro(hit)),
+                        };
+                    }
+                }
+            }
+            Search::Any => {
+                self.blocked.clear();
+                self.blocked.resize(count, false);
+                let blocked = &mut self.blocked;
+                bvh.occluded_many::<Watertight, _>(&self.rays, &self.ends, &AcceptAll, blocked);
+                for (asked, blocked) in self.asked.iter_mut().zip(blocked) {
+                    asked.blocked = *blocked;
+                }
+            }
+        }
     }
 
     /// Walks over the flat reliefs, one map after the other.
@@ -211,15 +222,15 @@ impl Tracer {
         for (material, field) in mesh.reliefs.fields.iter().enumerate() {
             let Some(field) = field else { continue };
             let this = |job: &&Job| usize::from(job.material) == material;
-            self.rays.clear();
-            self.rays
-                .extend(self.jobs.iter().filter(this).map(|job| job.ray));
-            if self.rays.is_empty() {
+            let rays = &mut self.relief_rays;
+            rays.clear();
+            rays.extend(self.jobs.iter().filter(this).map(|job| job.ray));
+            if rays.is_empty() {
                 continue;
             }
             self.walks.clear();
-            self.walks.resize(self.rays.len(), Walk::NONE);
-            field.walk_all(level, &self.rays, &mut self.walks);
+            self.walks.resize(rays.len(), Walk::NONE);
+            field.walk_all(level, rays, &mut self.walks);
             for (job, walk) in self.jobs.iter().filter(this).zip(&self.walks) {
                 let asked = &mut self.asked[job.asked];
                 asked.steps += u64::from(walk.steps);
@@ -240,7 +251,7 @@ impl Tracer {
     #[must_use]
     pub fn is_hit(&self, index: usize) -> bool {
         let asked = &self.asked[index];
-        asked.flat.is_some() || asked.best.hit.is_some()
+        asked.blocked || asked.flat.is_some() || asked.best.hit.is_some()
     }
 
     /// What the ray in a place of the list met.
@@ -250,14 +261,16 @@ impl Tracer {
             mesh,
             reliefs,
             displacement,
+            ..
         } = mesh;
         let asked = &self.asked[index];
         if let Some((prim, t)) = asked.flat {
             let prism = FlatPrism::new(mesh, &reliefs, displacement, prim)?;
-            return Some(prism.hit(&asked.ray, t));
+            return Some(prism.hit(&self.rays[index], t));
         }
-        let patch = Patch::new(mesh, &reliefs, displacement, asked.fine?)?;
-        Some(patch.hit(asked.best.t, &asked.best.hit?))
+        let micro = asked.best.hit?;
+        let patch = Patch::new(mesh, (&reliefs, displacement), micro.leaf.0)?;
+        Some(patch.hit(asked.best.t, &micro))
     }
 }
 
@@ -275,30 +288,23 @@ impl Kernel for Visit<'_, '_, '_> {
             mesh,
             reliefs,
             displacement,
+            micro,
         } = self.mesh;
         let mut last_prism: Option<(u32, FlatPrism<'_, '_>)> = None;
         let Tracer {
-            asked,
-            jobs,
-            nodes,
-            budget,
-            ..
+            asked, rays, jobs, ..
         } = self.tracer;
-        let mut meeting = Meeting {
-            mesh,
-            door: (&reliefs, displacement),
-            range: seams::range(&reliefs).map(|d| d as f32),
-            nodes,
-            budget: *budget,
-            counters: FineCounters::default(),
-        };
-        for (index, asked) in asked.iter_mut().enumerate() {
+        let door = (&reliefs, displacement);
+        let mut meeting = Meeting::new(door);
+        for (index, (asked, &ray)) in asked.iter_mut().zip(&*rays).enumerate() {
+            if asked.blocked {
+                continue;
+            }
             let mut fine_ray = None;
-            let ray = asked.ray;
             let mut boxes = displacement.tree.along(&ray);
             while let Some(i) = boxes.next(asked.best.t) {
-                let prim = displacement.prims[i as usize];
-                match displacement.shapes[i as usize] {
+                let Piece { prim, shape, .. } = displacement.pieces[i as usize];
+                match shape {
                     Shape::Flat => {
                         let prism = match last_prism {
                             Some((known, prism)) if known == prim => prism,
@@ -322,13 +328,13 @@ impl Kernel for Visit<'_, '_, '_> {
                             });
                         }
                     }
-                    Shape::Fine(cut) => {
+                    // Met already.
+                    Shape::Fine(_) if micro.is_some() => {}
+                    Shape::Fine(_) => {
                         let ray = fine_ray
-                            .get_or_insert_with(|| FineRay::new(&ray, displacement.tree.reach()));
-                        let known = asked.best.hit.map(|hit| hit.key);
-                        asked.best = meeting.meet(simd, (prim, cut), ray, (asked.best, any));
-                        if asked.best.hit.map(|hit| hit.key) != known {
-                            asked.fine = Some((prim, cut));
+                            .get_or_insert_with(|| FineRay::new(&ray, displacement.reach()));
+                        if let Some(patch) = Patch::new(mesh, door, i) {
+                            asked.best = meeting.meet(simd, &patch, ray, (asked.best, any));
                         }
                     }
                 }

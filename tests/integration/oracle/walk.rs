@@ -228,11 +228,7 @@ fn any_ray(field: &ReliefField<'_>, random: &mut Random) -> ReliefRay {
         z: from[2],
         z_rate: dz,
         end,
-        side: if above {
-            Side::Above
-        } else {
-            Side::Below
-        },
+        side: if above { Side::Above } else { Side::Below },
     }
 }
 
@@ -249,11 +245,7 @@ fn walks_from_either_side_meet_the_relief_where_a_fine_march_crosses_it() {
             let gap = |tau: f64| {
                 let place = [0, 1].map(|k| ray.start[k] + ray.rate[k] * tau);
                 let gap = ray.z_at(tau) - field.displacement(place);
-                if ray.side == Side::Above {
-                    gap
-                } else {
-                    -gap
-                }
+                if ray.side == Side::Above { gap } else { -gap }
             };
             let reached = walk.at.unwrap_or(ray.end);
             if let Some(at) = walk.at {

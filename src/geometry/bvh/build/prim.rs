@@ -2,7 +2,7 @@
 
 use glam::{Vec3, Vec4};
 
-use crate::geometry::{Aabb, TriangleMesh};
+use crate::geometry::Aabb;
 
 /// A box whose corners fill a vector register each; what their w holds does not count.
 #[derive(Debug, Clone, Copy)]
@@ -53,7 +53,7 @@ impl Box4 {
     }
 }
 
-/// A triangle's box and index: 32 bytes, two to a cache line.
+/// The box and index of a triangle or a block: 32 bytes, two to a cache line.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::geometry::bvh) struct PrimRef {
     /// The bits of `lower.w` are the index, so that both halves load as they are.
@@ -61,8 +61,9 @@ pub(in crate::geometry::bvh) struct PrimRef {
 }
 
 impl PrimRef {
-    pub(super) fn new(mesh: &TriangleMesh, prim: u32) -> Self {
-        let bounds = Aabb::from_points(mesh.corners(prim));
+    /// Something with an index and these corners.
+    pub(super) fn new(prim: u32, corners: impl IntoIterator<Item = Vec3>) -> Self {
+        let bounds = Aabb::from_points(corners);
         Self {
             bounds: Box4 {
                 lower: bounds.min.extend(f32::from_bits(prim)),
@@ -71,7 +72,7 @@ impl PrimRef {
         }
     }
 
-    /// Index in the mesh.
+    /// Its index.
     pub(in crate::geometry::bvh) fn index(&self) -> u32 {
         self.bounds.lower.w.to_bits()
     }

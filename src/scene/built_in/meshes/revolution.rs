@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
-use super::{Vertex, WorldMesh};
+use super::{Vertex, WorldMesh, sin_cos_turns};
 
 /// A cubic Bézier curve in the half plane of radius (x ≥ 0) and height (y).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,7 +87,7 @@ pub fn revolve(
     for curve in chain {
         let length = curve.length();
         mesh.patch([segments, STEPS], material, |s, t| {
-            let (sin, cos) = (s * TAU).sin_cos();
+            let (sin, cos) = sin_cos_turns(s);
             let outwards = DVec3::new(cos, sin, 0.0);
             let (p, along) = (curve.at(t), curve.tangent(t));
             Vertex {
@@ -127,7 +127,7 @@ pub fn fluted_shaft(
     for flute in 0..flutes {
         mesh.patch([8, 16], material, |s, t| {
             let turns = (f64::from(flute) + s) / f64::from(flutes);
-            let (sin, cos) = (turns * TAU).sin_cos();
+            let (sin, cos) = sin_cos_turns(turns);
             let (outwards, sideways) = (DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0));
             let (r, rise) = radius(t);
             let cut = 1.0 - DEPTH * 4.0 * s * (1.0 - s);

@@ -1,10 +1,10 @@
 //! Planes, boxes, spheres, tori and discs.
 
-use std::f64::consts::{FRAC_PI_4, PI, TAU};
+use std::f64::consts::FRAC_PI_4;
 
 use glam::{DVec2, DVec3};
 
-use super::{Vertex, WorldMesh};
+use super::{Vertex, WorldMesh, sin_cos_turns};
 
 /// A flat parallelogram from `corner` along two edges; its front is the side of `edge_u × edge_v`.
 ///
@@ -77,8 +77,8 @@ pub fn bevelled_box(half: DVec3, bevel: f64, tile: f64, material: u16) -> WorldM
 pub fn sphere(radius: f64, segments: u32, tiles: [f64; 2], material: u16) -> WorldMesh {
     let mut mesh = WorldMesh::default();
     mesh.patch([segments, (segments / 2).max(2)], material, |s, t| {
-        let (sin_a, cos_a) = (s * TAU).sin_cos();
-        let (sin_b, cos_b) = ((t - 0.5) * PI).sin_cos();
+        let (sin_a, cos_a) = sin_cos_turns(s);
+        let (sin_b, cos_b) = sin_cos_turns((t - 0.5) * 0.5);
         let normal = DVec3::new(cos_a * cos_b, sin_a * cos_b, sin_b);
         Vertex {
             position: normal * radius,
@@ -96,8 +96,8 @@ pub fn torus(radii: [f64; 2], segments: [u32; 2], tiles: [f64; 2], material: u16
     let [major, minor] = radii;
     let mut mesh = WorldMesh::default();
     mesh.patch(segments, material, |s, t| {
-        let (sin_a, cos_a) = (s * TAU).sin_cos();
-        let (sin_b, cos_b) = (t * TAU).sin_cos();
+        let (sin_a, cos_a) = sin_cos_turns(s);
+        let (sin_b, cos_b) = sin_cos_turns(t);
         let outwards = DVec3::new(cos_a, sin_a, 0.0);
         let normal = outwards * cos_b + DVec3::Z * sin_b;
         Vertex {
@@ -115,7 +115,7 @@ pub fn torus(radii: [f64; 2], segments: [u32; 2], tiles: [f64; 2], material: u16
 pub fn disc(radius: f64, segments: u32, material: u16) -> WorldMesh {
     let mut mesh = WorldMesh::default();
     mesh.patch([segments, 1], material, |s, t| {
-        let (sin, cos) = (s * TAU).sin_cos();
+        let (sin, cos) = sin_cos_turns(s);
         let place = DVec2::new(cos, sin) * t;
         Vertex {
             position: (place * radius).extend(0.0),

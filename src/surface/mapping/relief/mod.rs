@@ -7,6 +7,7 @@
 //! - `exact`: the walk for surface points, for the eye and for lights
 
 mod axis;
+mod cell_span;
 mod cones;
 mod exact;
 mod march;

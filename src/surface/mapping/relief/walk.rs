@@ -1,8 +1,10 @@
 //! The exact walk: where a straight ray first meets the bilinear relief.
 
 use super::axis::Axis;
+use super::cell_span::{CellSpan, extremes, fractions};
 use super::walk_lanes::walk_all;
 use crate::math::simd::SimdLevel;
+use crate::math::{Bits, Mask as _, Real, V2};
 use crate::surface::mapping::BoundHeight;
 use crate::texture::{HeightPyramid, Level, StoredHeights, Wrap};
 
@@ -223,6 +225,70 @@ impl<'a> ReliefField<'a> {
             StoredHeights::U16(texels, all) => self.with(texels, all).extremes(level, nodes),
             StoredHeights::F32(texels, all) => self.with(texels, all).extremes(level, nodes),
         }
+    }
+
+    /// [`Self::range_near`] for triangles of texture coordinates, one in each lane: never less, perhaps somewhat
+    /// more.
+    #[inline(always)]
+    #[must_use]
+    pub fn ranges_near<F: Real>(&self, corners: [V2<F>; 3]) -> [F; 2] {
+        let height = &self.height;
+        let [a, b, c] = corners;
+        let (a, b, c) = (
+            height.addressing.st(a),
+            height.addressing.st(b),
+            height.addressing.st(c),
+        );
+        let like = a.x;
+        let x = CellSpan::new([a.x, b.x, c.x], self.size[0], height.addressing.wrap);
+        let y = CellSpan::new([a.y, b.y, c.y], self.size[1], height.addressing.wrap);
+        let top = self.levels.len() - 1;
+        let mut level = 0;
+        while level < top && (x.is_wider(level) | y.is_wider(level)).any() {
+            level += 1;
+        }
+        let Level { start, columns, .. } = self.levels[level];
+        let ([i0, i1], x_known) = x.nodes(level);
+        let ([j0, j1], y_known) = y.nodes(level);
+        let row0 = j0.times(columns).plus(start as u32);
+        let row1 = j1.times(columns).plus(start as u32);
+        let nodes = [
+            row0.plus_each(i0),
+            row0.plus_each(i1),
+            row1.plus_each(i0),
+            row1.plus_each(i1),
+        ];
+        let [low, high] = match self.stored {
+            StoredHeights::U16(_, all) => {
+                let [[a], [b], [c], [d]] = F::Bits::gather(nodes, |node| {
+                    let [low, high] = all[node as usize];
+                    [u32::from(low) | u32::from(high) << 16]
+                });
+                extremes([fractions(a), fractions(b), fractions(c), fractions(d)])
+            }
+            StoredHeights::F32(_, all) => {
+                let [[a, b], [c, d], [e, f], [g, h]] = F::Bits::gather(nodes, |node| {
+                    let [low, high] = all[node as usize];
+                    [low.to_bits(), high.to_bits()]
+                });
+                extremes([
+                    [a.to_real(), b.to_real()],
+                    [c.to_real(), d.to_real()],
+                    [e.to_real(), f.to_real()],
+                    [g.to_real(), h.to_real()],
+                ])
+            }
+        };
+        let at_low = low * height.scale + height.offset;
+        let at_high = high * height.scale + height.offset;
+        let [all_low, all_high] = self.range;
+        let known = x_known & y_known;
+        let low = F::select(known, at_low.smaller(at_high), like.splat(all_low as f32));
+        let high = F::select(known, at_low.larger(at_high), like.splat(all_high as f32));
+        // Roundings here and of the heights themselves.
+        let largest = all_low.abs().max(all_high.abs()) as f32;
+        let margin = (largest + height.offset.abs()) * 1e-6;
+        [low - margin, high + margin]
     }
 
     /// Displacement at a place in texels; 0 farther away than anything can be.

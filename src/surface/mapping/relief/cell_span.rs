@@ -1,0 +1,114 @@
+//! Which nodes of a pyramid lie under places in vector lanes.
+
+use crate::math::{Bits, Real};
+use crate::texture::Wrap;
+
+/// Texels that a place may be off by.
+const MARGIN: f32 = 0.01;
+
+/// From here on floats do not tell texels apart.
+const FAR: f32 = 2_097_152.0;
+
+/// The first and last cell under a few places along one axis of a picture, in each lane.
+pub(super) struct CellSpan<F: Real> {
+    first: F,
+    last: F,
+    /// Whether both are inside the picture or can be wrapped into it.
+    known: F::Mask,
+    size: u32,
+    wrap: Wrap,
+}
+
+impl<F: Real> CellSpan<F> {
+    /// Of coordinates 0…1 across `size` texels.
+    #[inline(always)]
+    pub(super) fn new(places: [F; 3], size: u32, wrap: Wrap) -> Self {
+        let count = size as f32;
+        let [a, b, c] = places;
+        let (a, b, c) = (a * count - 0.5, b * count - 0.5, c * count - 0.5);
+        let (low, high) = (a.smaller(b).smaller(c), a.larger(b).larger(c));
+        let reach = a.abs().larger(b.abs()).larger(c.abs());
+        let margin = reach * 2e-6 + MARGIN;
+        let (first, last) = ((low - margin).floor(), (high + margin).floor());
+        let is_whole = (first + count).le(last);
+        // No for NaN, too.
+        let numbers = a.is_finite() & b.is_finite() & c.is_finite();
+        let near = numbers & reach.lt(a.splat(FAR)) & !is_whole;
+        let (zero, end) = (a.splat(0.0), a.splat(count - 1.0));
+        let inside = near & first.ge(zero) & last.le(end);
+        let (turned, known) = match wrap {
+            Wrap::Repeat => ([turned(first, count), turned(last, count)], near),
+            // Beyond its border a clamped picture is its border.
+            Wrap::Clamp => ([first, last], near),
+            Wrap::Mirror => ([first, last], inside),
+        };
+        let [first, last] = turned;
+        Self {
+            first: F::select(known, first, zero).larger(zero).smaller(end),
+            last: F::select(known, last, zero).larger(zero).smaller(end),
+            known,
+            size,
+            wrap,
+        }
+    }
+
+    /// Cells from the first to the last, across the border if that is between them.
+    #[inline(always)]
+    fn count(&self) -> F {
+        let count = self.last - self.first + 1.0;
+        let across = count + self.size as f32;
+        F::select(self.first.le(self.last), count, across)
+    }
+
+    /// Whether they may lie in more than two nodes of a level.
+    #[inline(always)]
+    pub(super) fn is_wider(&self, level: usize) -> F::Mask {
+        let count = self.count();
+        // A node and one cell more begin in at most two nodes, wherever they begin.
+        self.known & count.splat(((1_u32 << level) + 1) as f32).lt(count)
+    }
+
+    /// The nodes of a level that the first and the last cell lie in, and whether there are no others between: across
+    /// the border there may be, if that cuts a node off.
+    #[inline(always)]
+    pub(super) fn nodes(&self, level: usize) -> ([F::Bits; 2], F::Mask) {
+        let by = level as u32;
+        let ends = [self.first.to_index().shr(by), self.last.to_index().shr(by)];
+        let is_even = self.wrap == Wrap::Repeat && self.size.is_multiple_of(1 << level);
+        let known = if is_even {
+            self.known
+        } else {
+            self.known & self.first.le(self.last)
+        };
+        (ends, known & !self.is_wider(level))
+    }
+}
+
+/// A whole number modulo another.
+#[inline(always)]
+fn turned<F: Real>(cell: F, count: f32) -> F {
+    let (zero, count_each) = (cell.splat(0.0), cell.splat(count));
+    let turned = cell - (cell * (1.0 / count)).floor() * count;
+    // The reciprocal is rounded, so that it may be a turn off.
+    let turned = F::select(turned.lt(zero), turned + count, turned);
+    F::select(turned.ge(count_each), turned - count, turned)
+}
+
+/// Fractions of 65535 from the lower and the upper half of 32 bits.
+#[inline(always)]
+pub(super) fn fractions<B: Bits>(both: B) -> [B::Real; 2] {
+    let unit = 1.0 / 65_535.0;
+    [
+        both.and(0xffff).signed_to_real() * unit,
+        both.shr(16).signed_to_real() * unit,
+    ]
+}
+
+/// Smallest and largest of four nodes.
+#[inline(always)]
+pub(super) fn extremes<F: Real>([a, b, c, d]: [[F; 2]; 4]) -> [F; 2] {
+    [
+        a[0].smaller(b[0]).smaller(c[0].smaller(d[0])),
+        a[1].larger(b[1]).larger(c[1].larger(d[1])),
+    ]
+}
