@@ -7,11 +7,12 @@ use egui::util::undoer::{Settings, Undoer};
 use glam::DVec3;
 
 use super::comparison::Comparison;
+use crate::scene::built_in::Placement;
 use crate::scene::{
     Camera, DisplaySettings, LoadWarning, LoadedScene, RenderSettings, Scene, SceneSource,
     ShadingSettings,
 };
-use crate::shading::{Light, Material};
+use crate::shading::{Falloff, Light, LightKind, Material};
 use crate::surface::mapping::MappingSettings;
 
 /// An open scene. Panels edit `settings` and `display` in place.
@@ -29,6 +30,55 @@ pub struct Document {
     /// Doubtful input.
     pub warnings: Vec<LoadWarning>,
     undo: Undoer<Edit>,
+}
+
+/// The way from one placement of a built-in scene to another.
+struct Shift {
+    from: DVec3,
+    to: DVec3,
+    /// Of all lengths.
+    ratio: f64,
+}
+
+impl Shift {
+    /// `None` if the two are not the same built-in scene.
+    fn between(from: &Document, to: &Document) -> Option<Self> {
+        let (name, before) = Placement::of(&from.scene.source)?;
+        let (other, after) = Placement::of(&to.scene.source)?;
+        let middle = |doc: &Document| doc.bounds().iter().sum::<DVec3>() * 0.5;
+        (name == other).then(|| Self {
+            from: middle(from),
+            to: middle(to),
+            ratio: after.scale / before.scale,
+        })
+    }
+
+    fn place(&self, p: DVec3) -> DVec3 {
+        (p - self.from) * self.ratio + self.to
+    }
+
+    fn light(&self, light: &Light) -> Light {
+        let mut light = light.clone();
+        if let LightKind::Point { position, falloff } = &mut light.kind {
+            *position = self.place(*position);
+            if *falloff == Falloff::InverseSquare {
+                // The same irradiance from a lamp that is `ratio` times as far away.
+                let intensity = f64::from(light.intensity) * self.ratio * self.ratio;
+                light.intensity = intensity.min(f64::from(f32::MAX)) as f32;
+            }
+        }
+        light
+    }
+
+    fn material(&self, material: &Material) -> Material {
+        let mut material = material.clone();
+        material.default_amplitude *= self.ratio;
+        material.amplitude = material.amplitude.map(|a| a * self.ratio);
+        for slot in &mut material.maps {
+            slot.baked_amplitude = slot.baked_amplitude.map(|baked| baked * self.ratio);
+        }
+        material
+    }
 }
 
 /// What an undo step brings back. The camera is not in it: nobody wants to lose a view to undo a colour.
@@ -61,24 +111,32 @@ impl Document {
         }
     }
 
-    /// The same scene put elsewhere: mapping, shading, samples and what is shown stay, and the camera goes along.
-    /// Lights and materials are those of the scene.
+    /// The same scene put elsewhere: everything that was set stays, and what has a place or a length goes along.
     #[must_use]
     pub fn put_to(self, loaded: LoadedScene) -> Self {
-        let ([min, max], extent) = (self.bounds(), self.extent());
         let mut placed = Self::new(loaded);
-        let ([to_min, to_max], ratio) = (placed.bounds(), placed.extent() / extent);
-        let put = |p: DVec3| (p - (min + max) * 0.5) * ratio + (to_min + to_max) * 0.5;
-        let settings = &mut placed.settings;
-        settings.camera = Camera {
-            eye: put(self.settings.camera.eye),
-            target: put(self.settings.camera.target),
-            ..self.settings.camera
+        let Some(shift) = Shift::between(&self, &placed) else {
+            return placed;
         };
-        settings.mapping = self.settings.mapping;
-        settings.mapping.amplitude = self.settings.mapping.amplitude.map(|a| a * ratio);
-        settings.shading = self.settings.shading;
-        settings.samples = self.settings.samples;
+        let before = self.settings;
+        placed.settings = RenderSettings {
+            camera: Camera {
+                eye: shift.place(before.camera.eye),
+                target: shift.place(before.camera.target),
+                ..before.camera
+            },
+            lights: before.lights.iter().map(|l| shift.light(l)).collect(),
+            materials: before.materials.iter().map(|m| shift.material(m)).collect(),
+            mapping: MappingSettings {
+                amplitude: before.mapping.amplitude.map(|a| a * shift.ratio),
+                ..before.mapping
+            },
+            ..before
+        };
+        if let Some(scene) = Arc::get_mut(&mut placed.scene) {
+            // Pictures that were added in the window, and what has been made of any.
+            scene.images.clone_from(&self.scene.images);
+        }
         placed.display = self.display;
         placed.comparison = self.comparison;
         placed

@@ -19,6 +19,8 @@ mod load_large;
 mod load_mtl;
 mod load_obj;
 mod mapping;
+#[cfg(target_os = "linux")]
+mod memory;
 mod metrics;
 mod normal_maps;
 mod numerics;

@@ -7,17 +7,20 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use reliefscope::math::{LinearRgb, hash, unit_interval};
+use reliefscope::render::Snapshot;
 use reliefscope::scene::file::{SaveError, SceneView, apply_overrides, read_scene, write_scene};
 use reliefscope::scene::load::LoadOptions;
 use reliefscope::scene::save_picture::write_png;
 use reliefscope::scene::{
-    Background, BentNormals, Camera, LoadError, LoadedScene, SceneSource, ShadingModel,
-    TextureFilter, View, open,
+    Background, BentNormals, Camera, LoadError, LoadedScene, RenderSettings, SceneSource,
+    ShadingModel, TextureFilter, View, open,
 };
 use reliefscope::shading::{Falloff, Light, LightKind, Material};
 use reliefscope::surface::mapping::{Derivative, Lookup, Method, SearchSettings};
 use reliefscope::texture::{Channel, MapRole, MapSlot, NormalSpace, Wrap};
 use tempfile::TempDir;
+
+use super::support::{bits, picture};
 
 const MODEL: &str = "mtllib plane.mtl
 v -1 -1 0
@@ -316,6 +319,46 @@ fn a_built_in_scene_comes_back_with_its_generated_pictures() {
     // And once more, from what was read.
     write_scene(&path, &SceneView::from(&read)).expect("is written again");
     assert_eq!(fs::read_to_string(&path).expect("is there"), text);
+}
+
+/// Wherever a built-in scene was put, with edits or without, normalised or not.
+#[test]
+fn a_placed_scene_comes_back_with_the_same_picture() {
+    let folder = Folder::new();
+    let path = folder.path("placed.toml");
+    for (name, normalize) in [
+        ("extremes@1e6,1e4", true),
+        ("extremes@1e-12", true),
+        ("extremes@1e3,1e2", false),
+        ("plane@1e15,1e6", true),
+        ("wall@2.5e-1,3e0", true),
+    ] {
+        let options = LoadOptions {
+            normalize,
+            ..LoadOptions::default()
+        };
+        let mut placed = open(Path::new(name), &options).expect("it is built in");
+        placed.settings.materials[0].kd = LinearRgb::new(0.9, 0.2, 0.1);
+        placed.settings.lights[1].intensity *= 1.25;
+        write_scene(&path, &SceneView::from(&placed)).expect("written");
+        let read = open(&path, &LoadOptions::default()).expect("read");
+        assert_eq!(read.scene.source, SceneSource::BuiltIn(name.to_owned()));
+        assert_eq!(read.scene.normalization, placed.scene.normalization);
+        let seen = |loaded: &LoadedScene| {
+            picture(&Snapshot {
+                scene: Arc::clone(&loaded.scene),
+                settings: Arc::new(RenderSettings {
+                    samples: 1,
+                    ..loaded.settings.clone()
+                }),
+                size: [48, 32],
+            })
+        };
+        let (before, after) = (seen(&placed), seen(&read));
+        assert_eq!(bits(&before), bits(&after), "{name}");
+        let lit = before.pixels.iter().filter(|p| p.g > 0.02).count();
+        assert!(lit > 500, "{name}: {lit} pixels show something");
+    }
 }
 
 #[test]

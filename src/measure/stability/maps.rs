@@ -1,6 +1,7 @@
 //! Maps of all sizes, depths and contents, in every role and under every method.
 
 use super::board::{Album, Board, bumps, grey16};
+use super::methods::most_steps;
 use super::{Effort, Finding, Plan, Test};
 use crate::surface::mapping::Method;
 use crate::texture::{MapRole, RawImage, Samples};
@@ -12,6 +13,8 @@ const AMPLITUDES: [f64; 2] = [0.1, 10.0];
 
 /// Wider maps are rendered at the best level alone: what searches need of them takes too long to make.
 const LARGE: u32 = 256;
+/// No picture that is read has more columns or rows.
+const LARGEST: u32 = 16_384;
 
 /// A line for each map.
 pub(super) fn tests(plan: &Plan) -> Vec<Test> {
@@ -20,6 +23,10 @@ pub(super) fn tests(plan: &Plan) -> Vec<Test> {
         all.push(Test::new("maps", name, move |plan| {
             everywhere(plan, &make())
         }));
+    }
+    if plan.effort == Effort::Full {
+        let name = format!("{LARGEST} x {LARGEST} texels");
+        all.push(Test::new("maps", name, largest));
     }
     all
 }
@@ -30,7 +37,9 @@ type Make = Box<dyn Fn() -> RawImage + Send + Sync>;
 fn pictures(effort: Effort) -> Vec<(String, Make)> {
     let mut all: Vec<(String, Make)> = Vec::new();
     let mut add = |name: &str, make: Make| all.push((name.to_owned(), make));
-    for (width, height) in [(1, 1), (1, 64), (64, 1), (2, 2), (3, 7), (255, 257)] {
+    let thin = [(1, 64), (64, 1), (1, LARGEST), (LARGEST, 1)];
+    let small = [(1, 1), (2, 2), (3, 7), (255, 257)];
+    for (width, height) in small.into_iter().chain(thin) {
         let noise = move || {
             grey16(width, height, |x, y| {
                 f64::from((x * 37 + y * 91) % 64) / 63.0
@@ -122,7 +131,7 @@ fn everywhere(plan: &Plan, image: &RawImage) -> Finding {
     let mut album = Album::default();
     let maps = MapRole::ALL.map(|role| (role, image.clone()));
     let mut board = Board::with_maps(maps.into());
-    if image.width > LARGE {
+    if image.width.max(image.height) > LARGE {
         board = board.alone();
     }
     for slot in &mut board.settings.materials[0].maps {
@@ -139,4 +148,38 @@ fn everywhere(plan: &Plan, image: &RawImage) -> Finding {
         }
     }
     album.finding()
+}
+
+/// The largest map there is, as heights of 16 bits: half a GiB, and what searches make of it. The cones of
+/// `relaxed-cone` are left out: they would take many minutes to make.
+fn largest(_plan: &Plan) -> Finding {
+    const SIDE: u32 = 32;
+    let mut album = Album::default();
+    let mut board = Board::with_maps(vec![(MapRole::Height, bumps(LARGEST))]).alone();
+    let (mut too_many, mut most) = (0, 0.0_f64);
+    let methods = Method::ALL
+        .into_iter()
+        .filter(|m| *m != Method::RelaxedCone);
+    for method in methods {
+        for (angle, tiles) in ANGLES.into_iter().flat_map(|a| AMPLITUDES.map(|t| (a, t))) {
+            board.seen_at(angle);
+            board.mapped(method, tiles);
+            album.add(&board, SIDE);
+            if method.searches() {
+                board.settings.mapping.search.self_shadow = false;
+                let counters = board.render(SIDE).counters;
+                board.settings.mapping.search.self_shadow = true;
+                let mean = counters.relief_steps as f64 / counters.camera_rays.max(1) as f64;
+                most = most.max(mean);
+                too_many += u64::from(mean > most_steps(method, &board, angle, LARGEST));
+            }
+        }
+    }
+    let wrong = album.non_finite + too_many;
+    Finding::none_of(
+        album.pixels,
+        "non-finite pixels, or views of too many steps",
+        wrong,
+    )
+    .with_note(format!("{most:.1} steps a pixel at the worst view"))
 }

@@ -53,14 +53,14 @@ fn finite(plan: &Plan, method: Method, angle: f64) -> Finding {
     album.finding()
 }
 
-/// Most steps that a search may need from top to bottom, self-shadow left out.
-fn most_steps(method: Method, board: &Board, angle: f64) -> f64 {
+/// Most steps that a search may need from top to bottom of a map `texels` wide, self-shadow left out.
+pub(super) fn most_steps(method: Method, board: &Board, angle: f64, texels: u32) -> f64 {
     let mapping = &board.settings.mapping;
     if method == Method::Exact {
         // As far as the most slanted ray runs within the relief, in tiles; texel by texel at the worst.
         let steepest = (0.2 * (90.0 - angle)).to_radians().tan();
         let tiles = mapping.amplitude.unwrap_or(0.0) / TILE / steepest;
-        return 64.0 + 4.0 * f64::from(2 * SIDE) * (tiles + 2.0);
+        return 64.0 + 4.0 * f64::from(2 * texels) * (tiles + 2.0);
     }
     f64::from(mapping.search.layers + mapping.search.bisections + mapping.search.iterations + 2)
 }
@@ -78,7 +78,7 @@ fn steps(plan: &Plan, method: Method) -> Finding {
             let rays = rendered.counters.camera_rays;
             pixels += rays;
             let mean = rendered.counters.relief_steps as f64 / rays.max(1) as f64;
-            worst = worst.max(mean / most_steps(method, &board, angle));
+            worst = worst.max(mean / most_steps(method, &board, angle, SIDE));
             most = most.max(mean);
         }
     }

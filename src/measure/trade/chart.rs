@@ -85,7 +85,12 @@ impl Ruler {
         let [low, high] = ruler.range;
         ruler.range = match axis.scale {
             _ if low > high => [0.0, 1.0],
-            Scale::Log => [(low - 0.05).floor(), (high + 0.05).ceil()],
+            // What is smaller than the least lies on the axis itself.
+            Scale::Log => {
+                let least = axis.least.log10().round();
+                let low = (low - 0.05).floor().max(least);
+                [low, (high + 0.05).ceil().max(low + 1.0)]
+            }
             Scale::Linear => [
                 low.min(0.0),
                 if high > low.min(0.0) { high } else { low + 1.0 },
@@ -105,6 +110,15 @@ impl Ruler {
         let [low, high] = self.range;
         let part = ((self.along(value) - low) / (high - low)).clamp(0.0, 1.0);
         self.place[0] + (self.place[1] - self.place[0]) * part as f32
+    }
+
+    /// What is written at a tick.
+    fn label(&self, tick: f64) -> String {
+        let sign = match self.scale {
+            Scale::Log if tick < self.least * 1.5 => "≤ ",
+            _ => "",
+        };
+        format!("{sign}{}", short(tick))
     }
 
     /// Numbers to write along the axis.
@@ -194,6 +208,7 @@ impl Chart {
         for series in &self.series {
             draw_series(&mut shapes, series, &x, &y);
         }
+        labels(&mut shapes, &self.series, &x, &y);
         let names = self.series.iter().filter(|s| !s.name.is_empty());
         for (i, series) in names.enumerate() {
             let at = [x_end + 14.0, top + 8.0 + 16.0 * i as f32];
@@ -226,25 +241,25 @@ fn grid(shapes: &mut Vec<Shape>, x: &Ruler, y: &Ruler) {
         dashed: false,
     };
     for tick in x.ticks() {
-        let at = x.at(tick);
+        let (at, label) = (x.at(tick), x.label(tick));
         shapes.push(line(vec![[at, y.place[0]], [at, y.place[1]]], FAINT));
         shapes.push(words(
             [at, y.place[0] + 14.0],
             SMALL,
             INK,
             Anchor::Middle,
-            &short(tick),
+            &label,
         ));
     }
     for tick in y.ticks() {
-        let at = y.at(tick);
+        let (at, label) = (y.at(tick), y.label(tick));
         shapes.push(line(vec![[x.place[0], at], [x.place[1], at]], FAINT));
         shapes.push(words(
             [x.place[0] - 5.0, at + 3.5],
             SMALL,
             INK,
             Anchor::End,
-            &short(tick),
+            &label,
         ));
     }
     let corner = vec![
@@ -269,7 +284,7 @@ fn draw_series(shapes: &mut Vec<Shape>, series: &Series, x: &Ruler, y: &Ruler) {
             dashed: series.dashed,
         });
     }
-    for (point, label) in finite {
+    for (point, _) in finite {
         let at = place(*point);
         if series.dotted {
             shapes.push(Shape::Dot {
@@ -278,21 +293,55 @@ fn draw_series(shapes: &mut Vec<Shape>, series: &Series, x: &Ruler, y: &Ruler) {
                 color: series.color,
             });
         }
-        if !label.is_empty() {
-            // Towards the middle, so that nothing runs off the paper.
-            let is_right = at[0] > 0.5 * (x.place[0] + x.place[1]);
-            let (anchor, dx) = if is_right {
-                (Anchor::End, -6.0)
-            } else {
-                (Anchor::Start, 6.0)
-            };
-            shapes.push(words(
-                [at[0] + dx, at[1] - 4.0],
-                9.5,
-                series.color,
-                anchor,
-                label,
-            ));
+    }
+}
+
+/// Size of what is written beside points.
+const LABEL: f32 = 9.5;
+
+/// Writes beside the points what has room: no label over another, nor over a point, nor off the paper.
+fn labels(shapes: &mut Vec<Shape>, series: &[Series], x: &Ruler, y: &Ruler) {
+    let points = || {
+        series
+            .iter()
+            .flat_map(|s| s.points.iter().map(move |p| (s, p)))
+    };
+    let place = |[a, b]: [f64; 2]| [x.at(a), y.at(b)];
+    let is_finite = |p: &[f64; 2]| p.iter().all(|c| c.is_finite());
+    let dots = points().filter(|(s, (p, _))| s.dotted && is_finite(p));
+    let mut taken: Vec<[f32; 4]> = dots
+        .map(|(_, (p, _))| {
+            let [a, b] = place(*p);
+            [a - 3.0, b - 3.0, a + 3.0, b + 3.0]
+        })
+        .collect();
+    for (series, (point, label)) in points() {
+        if label.is_empty() || !is_finite(point) {
+            continue;
+        }
+        let at = place(*point);
+        // Letters are about half as wide as high.
+        let width = 0.52 * LABEL * label.chars().count() as f32;
+        let rows = [-4.0, 11.0, -15.0, 22.0, -26.0, 33.0];
+        let places = rows
+            .into_iter()
+            .flat_map(|dy| [6.0, -6.0 - width].map(|dx| [dx, dy]));
+        let mut boxes = places.map(|[dx, dy]| {
+            let [left, base] = [at[0] + dx, at[1] + dy];
+            [left, base - 0.8 * LABEL, left + width, base + 0.2 * LABEL]
+        });
+        let fits = |[left, top, right, bottom]: &[f32; 4]| {
+            let is_inside = *left >= x.place[0]
+                && *right <= x.place[1] + 10.0
+                && *top >= y.place[1] - 10.0
+                && *bottom <= y.place[0];
+            let is_free = |[l, t, r, b]: &[f32; 4]| right < l || left > r || bottom < t || top > b;
+            is_inside && taken.iter().all(is_free)
+        };
+        if let Some(free) = boxes.find(fits) {
+            let base = [free[0], free[3] - 0.2 * LABEL];
+            shapes.push(words(base, LABEL, series.color, Anchor::Start, label));
+            taken.push(free);
         }
     }
 }
@@ -335,6 +384,47 @@ mod tests {
         assert!((ruler.at(0.01) - 0.0).abs() < 1e-4 && (ruler.at(10.0) - 90.0).abs() < 1e-4);
         assert!((ruler.at(0.1) - 30.0).abs() < 1e-4);
         assert_eq!(ruler.at(0.0), 0.0, "zero lies at the end");
+    }
+
+    #[test]
+    fn what_is_too_small_lies_on_the_axis() {
+        let ruler = Ruler::new(&axis(Scale::Log), [1e-9, 0.02].into_iter(), [0.0, 90.0]);
+        let ticks = ruler.ticks();
+        assert_eq!(ticks.len(), 3, "{ticks:?}");
+        assert_eq!(ruler.label(ticks[0]), "≤ 0.001");
+        assert_eq!(ruler.label(ticks[1]), "0.01");
+        assert_eq!(ruler.at(1e-9), 0.0);
+    }
+
+    #[test]
+    fn labels_that_would_cover_one_another_move_or_go() {
+        let crowd = (0..20).map(|i| ([1.0 + 1e-6 * f64::from(i), 1.0], format!("method {i}")));
+        let chart = Chart {
+            title: String::new(),
+            x: axis(Scale::Log),
+            y: axis(Scale::Log),
+            series: vec![Series {
+                name: String::new(),
+                color: [0; 3],
+                points: crowd.collect(),
+                joined: false,
+                dotted: true,
+                dashed: false,
+            }],
+        };
+        let shapes = chart.drawing([400.0, 300.0]).shapes;
+        let mut places: Vec<[f32; 2]> = Vec::new();
+        for shape in &shapes {
+            if let Shape::Text { at, text, .. } = shape
+                && text.starts_with("method")
+            {
+                let is_clear =
+                    |p: &[f32; 2]| (p[1] - at[1]).abs() > LABEL || (p[0] - at[0]).abs() > 40.0;
+                assert!(places.iter().all(is_clear), "{text}");
+                places.push(*at);
+            }
+        }
+        assert!((2..20).contains(&places.len()), "{}", places.len());
     }
 
     #[test]

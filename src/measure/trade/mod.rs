@@ -8,7 +8,8 @@
 //! - `pictures`: pictures against a reference that knows its own error; `timing`, `precompute`: what it takes
 //! - `sweep`: all of it; `record`: what comes out; `merge`: shards put together again
 //! - `advice`: the cheapest method that is good enough; `glance`: a small sweep of one view, for a window
-//! - `table`, `plots` (of `chart`s), `page`: what came out as CSV, as drawings, as one HTML page
+//! - `table`, `plots` (of `chart`s), `page`: what came out as CSV, as drawings, as one HTML page; `notes`: what to know
+//!   before trusting it
 
 mod advice;
 mod chart;
@@ -17,6 +18,7 @@ mod facet;
 mod geometric;
 mod glance;
 mod merge;
+mod notes;
 mod orbit;
 mod page;
 mod pictures;

@@ -45,6 +45,15 @@ impl PlotMetric {
         }
     }
 
+    /// For titles.
+    const fn title(self) -> &'static str {
+        match self {
+            Self::Texels => "Error of uv",
+            Self::Normal => "Error of the normal",
+            Self::Flip => "FLIP",
+        }
+    }
+
     /// What is smaller is drawn at this place.
     #[must_use]
     pub const fn least(self) -> f64 {
@@ -100,7 +109,7 @@ pub fn error_by_cost(record: &Record, angle_deg: f64, metric: PlotMetric) -> Dra
         series.push(dots(method, own.map(point).collect()));
     }
     let chart = Chart {
-        title: format!("Error against cost at {angle:.0}°"),
+        title: format!("{} against cost at {angle:.0}°", metric.title()),
         x: log_axis("ns per sample on the model"),
         y: metric.axis(),
         series,
@@ -114,7 +123,7 @@ pub fn error_by_angle(record: &Record, metric: PlotMetric) -> Drawing {
     let cells = usual_cells(record);
     let lines = each_method(&cells, |c| [c.angle_deg, metric.of(c)]);
     let chart = Chart {
-        title: "Error against the angle of the view".to_owned(),
+        title: format!("{} against the angle of the view", metric.title()),
         x: Axis {
             name: "degrees from the normal".to_owned(),
             scale: Scale::Linear,
@@ -136,7 +145,7 @@ pub fn error_by_amplitude(record: &Record, angle_deg: f64, metric: PlotMetric) -
     };
     let cells: Vec<_> = all.into_iter().filter(|c| c.angle_deg == angle).collect();
     let chart = Chart {
-        title: format!("Error against amplitude at {angle:.0}°"),
+        title: format!("{} against amplitude at {angle:.0}°", metric.title()),
         x: Axis {
             name: "factor on the material's amplitude".to_owned(),
             scale: Scale::Linear,
@@ -164,7 +173,7 @@ pub fn error_by_steps(record: &Record, angle_deg: f64, metric: PlotMetric) -> Dr
         line(method, own.map(|c| place(c)).collect())
     });
     let chart = Chart {
-        title: format!("Error against steps at {angle:.0}°"),
+        title: format!("{} against steps at {angle:.0}°", metric.title()),
         x: log_axis("layers, cone steps or iterations asked for"),
         y: metric.axis(),
         series: lines.collect(),

@@ -12,8 +12,8 @@ use super::paths::folder;
 use crate::scene::load::{LoadOptions, load_model};
 use crate::scene::{LoadError, LoadWarning, LoadedScene, SceneSource, built_in, built_in_names};
 
-/// No scene file is longer.
-const MAX_BYTES: u64 = 16 << 20;
+/// No scene file is longer: its tables take up to a hundred times its length while it is read.
+pub(super) const MAX_BYTES: u64 = 4 << 20;
 
 /// Reads a scene file with its model and pictures.
 ///

@@ -4,6 +4,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::paths::{folder, relative};
+use super::read::MAX_BYTES;
 use super::text::{Text, degrees};
 use super::write_material::material;
 use crate::scene::save_picture::temporary_beside;
@@ -54,6 +55,14 @@ pub enum SaveError {
     /// A number that TOML could hold but no scene means.
     #[error("`{0}` is not a finite number")]
     NotFinite(String),
+    /// More text than would be read back.
+    #[error("{}: {length} bytes; no scene file is read beyond {MAX_BYTES}", path.display())]
+    TooLong {
+        /// The file.
+        path: PathBuf,
+        /// Of the text.
+        length: usize,
+    },
 }
 
 /// Writes a scene file; paths in it are relative to its folder where they share one.
@@ -63,9 +72,15 @@ pub enum SaveError {
 /// precision comes back one step away at most.
 ///
 /// # Errors
-/// [`SaveError`] if a number is not finite, a path is not UTF-8, or the system refuses.
+/// [`SaveError`] if a number is not finite, a path is not UTF-8, the text is too long, or the system refuses.
 pub fn write_scene(path: &Path, view: &SceneView<'_>) -> Result<(), SaveError> {
     let text = scene_text(view, folder(path))?;
+    if text.len() as u64 > MAX_BYTES {
+        return Err(SaveError::TooLong {
+            path: path.to_owned(),
+            length: text.len(),
+        });
+    }
     write_whole(path, text.as_bytes()).map_err(|source| SaveError::Io {
         path: path.to_owned(),
         source,

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::lookup::{Found, describe_folders, find_file, text_from_bytes};
 use super::materials::LibraryRef;
-use super::mtl::{MtlMaterial, parse_library, without_comment};
+use super::mtl::{MAX_MATERIALS, MtlMaterial, parse_library, without_comment};
 use crate::scene::LoadWarning;
 
 /// No library is longer: a larger file is something else.
@@ -113,6 +113,11 @@ impl Definitions {
                     warn(Some(material.line), message);
                 }
                 continue;
+            }
+            if self.list.len() == MAX_MATERIALS {
+                let message = format!("from here on: more than {MAX_MATERIALS} materials in all");
+                warn(Some(material.line), message);
+                break;
             }
             let index = self.list.len();
             self.by_name.insert(material.name.clone(), index);

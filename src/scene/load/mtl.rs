@@ -13,6 +13,8 @@ use super::map_statement::{MapKind, MapStatement, parse_map};
 /// Remarks per library before the rest is only counted: a binary file taken for a library would
 /// otherwise drown every other warning.
 const MAX_NOTES: usize = 100;
+/// Materials of all libraries of a model, four times as many as a model may use: no more are kept.
+pub(super) const MAX_MATERIALS: usize = 1 << 18;
 
 /// What one library says.
 #[derive(Debug, Default)]
@@ -90,6 +92,8 @@ struct Parser {
     notes: Vec<Note>,
     unused: Vec<Unused>,
     orphans: Option<(usize, usize)>,
+    /// The first material beyond [`MAX_MATERIALS`], and how many there are.
+    left_out: Option<(usize, usize)>,
     suppressed: usize,
 }
 
@@ -100,7 +104,11 @@ impl Parser {
             return;
         }
         let lower = keyword.to_ascii_lowercase();
-        if lower == b"newmtl" {
+        let is_new = lower == b"newmtl";
+        if self.left_out.is_some() || (is_new && self.materials.len() == MAX_MATERIALS) {
+            let (_, count) = self.left_out.get_or_insert((line, 0));
+            *count += usize::from(is_new);
+        } else if is_new {
             self.new_material(line, rest);
         } else if self.materials.is_empty() {
             let (_, count) = self.orphans.get_or_insert((line, 0));
@@ -239,6 +247,10 @@ impl Parser {
     fn finish(mut self) -> Library {
         let mut notes = std::mem::take(&mut self.notes);
         let mut say = |line, message| notes.push(Note { line, message });
+        if let Some((line, count)) = self.left_out {
+            let message = format!("beyond {MAX_MATERIALS} materials {count} are left out");
+            say(line, message);
+        }
         if let Some((line, count)) = self.orphans {
             let message = format!("{count} statement(s) before the first newmtl are ignored");
             say(line, message);

@@ -33,6 +33,19 @@ fn a_library_of_many_materials_is_read_in_step_with_its_length() {
     load(&format!("{QUAD}usemtl material199999\nf 1 2 3\n"), &library);
 }
 
+/// A material takes some hundred bytes, its shortest definition nine.
+#[test]
+fn no_more_materials_are_kept_than_a_model_could_use() {
+    let mut library = String::new();
+    for i in 0..(1 << 18) + 3 {
+        let _ = writeln!(library, "newmtl m{i}\nKd 1 0 0");
+    }
+    let warnings = load(&format!("{QUAD}usemtl m262144\nf 1 2 3\n"), &library);
+    let says = |what: &str| warnings.iter().any(|w| w.contains(what));
+    assert!(says("3 are left out"), "{warnings:?}");
+    assert!(says("m262144"), "{warnings:?}");
+}
+
 /// Each name that is nowhere was compared, in lower case, with all that are.
 #[test]
 fn names_that_are_nowhere_are_looked_for_in_step_with_their_number() {
@@ -86,7 +99,7 @@ fn a_name_as_long_as_a_file_is_cut() {
 fn a_scene_file_without_end_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("long.toml");
-    fs::write(&path, "#".repeat(17 << 20)).expect("written");
+    fs::write(&path, "#".repeat(5 << 20)).expect("written");
     let error = open(&path, &LoadOptions::default()).expect_err("refused");
     assert!(error.to_string().contains("too many"), "{error}");
 }

@@ -39,6 +39,11 @@ pub struct Driver {
 impl Driver {
     /// Opens a file and waits for its first picture; refining is paused to leave the cores to other tests.
     pub fn open(input: impl Into<PathBuf>) -> Self {
+        Self::open_at(input, 0.125)
+    }
+
+    /// The same with so many pixels a point.
+    pub fn open_at(input: impl Into<PathBuf>, pixels_per_point: f32) -> Self {
         let options = ViewOptions {
             input: Some(input.into()),
             threads: 1,
@@ -46,7 +51,7 @@ impl Driver {
         };
         let harness = Harness::builder()
             .with_size(WINDOW)
-            .with_pixels_per_point(0.125)
+            .with_pixels_per_point(pixels_per_point)
             .with_step_dt(1.0 / 60.0)
             .with_max_steps(8)
             .renderer(Nowhere)

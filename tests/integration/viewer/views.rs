@@ -4,6 +4,7 @@ use egui::{Key, Modifiers, PointerButton, vec2};
 use reliefscope::geometry::{Kernel, OffsetRule};
 use reliefscope::render::{MARK, NO_VALUE};
 use reliefscope::scene::{SceneSource, View, ViewKind};
+use reliefscope::shading::LightKind;
 
 use reliefscope::viewer::status::grouped;
 
@@ -158,4 +159,52 @@ fn the_extremes_section() {
         |source: &SceneSource| *source == SceneSource::BuiltIn("extremes@1e-12,1e4".into());
     driver.wait_until(|app| app.document().is_some_and(|doc| is_far(&doc.scene.source)));
     driver.settle();
+}
+
+/// What was edited goes along with a scene that is put elsewhere, and the picture stays.
+#[test]
+fn edits_survive_a_move() {
+    let mut driver = Driver::open("extremes");
+    driver.section("Lights");
+    driver.section("Materials");
+    driver.button("Point");
+    driver.settle();
+    let lights = driver.settings().lights.clone();
+    let lamp = lights
+        .iter()
+        .position(|l| matches!(l.kind, LightKind::Point { .. }));
+    let lamp = lamp.expect("a lamp");
+    driver.number("Shininess", 7.0);
+    driver.section("Method");
+    driver.section("Extremes");
+    driver.wait_until(|app| app.stats().samples == 1);
+    let before = driver.app().image().expect("a picture").pixels.clone();
+    let edited = driver.settings().clone();
+    assert_eq!(edited.materials[0].shininess, 7.0);
+
+    driver.slider("Scale 10^", 6.0);
+    let is_there = |source: &SceneSource| *source == SceneSource::BuiltIn("extremes@1e6".into());
+    driver.wait_until(|app| {
+        app.document()
+            .is_some_and(|doc| is_there(&doc.scene.source))
+    });
+    driver.settle();
+    driver.wait_until(|app| app.stats().samples == 1);
+    let moved = driver.settings();
+    assert_eq!(moved.lights.len(), edited.lights.len());
+    assert_eq!(moved.materials[0].shininess, 7.0);
+    let (old, new) = (&edited.lights[lamp], &moved.lights[lamp]);
+    assert_eq!(old.color, new.color);
+    assert!((f64::from(new.intensity) / f64::from(old.intensity) * 1e-12 - 1.0).abs() < 1e-6);
+    let after = &driver.app().image().expect("a picture").pixels;
+    let off = |(a, b): (&egui::Color32, &egui::Color32)| {
+        let pairs = a.to_array().into_iter().zip(b.to_array());
+        pairs.map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0) > 2
+    };
+    let differing = before.iter().zip(after).filter(|&pair| off(pair)).count();
+    assert!(
+        differing * 200 < before.len(),
+        "{differing} of {}",
+        before.len()
+    );
 }

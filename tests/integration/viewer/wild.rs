@@ -1,4 +1,5 @@
-//! A hand that does anything: seeded random actions, each of which leaves a window that still works.
+//! A hand that does anything: seeded random actions, each of which leaves a window that still works, and memory that
+//! does not grow for good.
 //!
 //! `RELIEFSCOPE_WILD_ACTIONS=100000 cargo test --release --test integration wild` runs as many as wanted,
 //! `RELIEFSCOPE_WILD_SEED` chooses others.
@@ -10,12 +11,18 @@ use egui::{Key, Modifiers, PointerButton, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use reliefscope::measure::stability::Random;
 
-use super::driver::{Driver, WINDOW};
+use super::driver::{Driver, WINDOW, reference};
 
 /// Actions of an ordinary test run.
 const ACTIONS: usize = 300;
 /// Actions between two looks at whether the picture still comes.
 const ROUND: usize = 50;
+/// Small pictures: some settings that the hand finds take a second for a thousand pixels.
+const PIXELS_PER_POINT: f32 = 0.04;
+/// Rounds between two lines that say how far it is.
+const TOLD: usize = 20;
+/// What the memory of late rounds may hold beyond that of early ones: allocators keep what large scenes left.
+const SLACK: u64 = 256 << 20;
 
 /// Roles of what can be used.
 const ROLES: [Role; 6] = [
@@ -26,6 +33,11 @@ const ROLES: [Role; 6] = [
     Role::ComboBox,
     Role::DisclosureTriangle,
 ];
+
+/// What lifts a relief or repeats it stays below this: a surface displaced by many times its own size, or a map repeated
+/// a million times on it, takes minutes a picture, and would tell nothing else.
+const MODERATE: [&str; 4] = ["mplitude", "ampl.", "Gain", "Scale"];
+const MOST: f64 = 0.02;
 
 /// What leaves the window: dialogs of the system, its end, and a thousand threads.
 const LEFT_ALONE: [&str; 8] = [
@@ -95,6 +107,9 @@ fn control(driver: &mut Driver, random: &mut Random) {
         return;
     }
     let node = &nodes[random.below(nodes.len())];
+    let label = node.accesskit_node().label().unwrap_or_default();
+    let is_moderate = MODERATE.iter().any(|word| label.contains(word));
+    let value = if is_moderate { value.min(MOST) } else { value };
     match role {
         Role::Slider | Role::SpinButton => node.set_value_accesskit(value),
         _ => node.click_accesskit(),
@@ -129,26 +144,79 @@ fn act(driver: &mut Driver, random: &mut Random) {
     driver.harness.step();
 }
 
+/// Bytes of memory that the process holds; `None` where the system does not say.
+fn resident_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|l| l.strip_prefix("VmRSS:"))?;
+    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib << 10)
+}
+
+/// Whether memory grows for good: at no time of the last quarter as little as at some time of the first.
+fn grows(rounds: &[u64]) -> bool {
+    let quarter = rounds.len() / 4;
+    let early = rounds[..quarter].iter().max();
+    let late = rounds[rounds.len() - quarter..].iter().min();
+    early
+        .zip(late)
+        .is_some_and(|(early, late)| *late > early + SLACK)
+}
+
+/// Changes the size of the picture, so that another has to come, and waits for it.
+fn ask_for_a_frame(driver: &mut Driver) {
+    driver.harness.set_size(WINDOW);
+    driver.key(Key::Escape);
+    driver.settle();
+    let before = driver.app().stats().generation;
+    driver.harness.set_size(WINDOW * 0.9);
+    driver.settle();
+    let after = driver.app().stats().generation;
+    assert!(after > before, "still frame {before}");
+}
+
 #[test]
 fn whatever_the_hand_does_pictures_come() {
     let actions = setting("RELIEFSCOPE_WILD_ACTIONS", ACTIONS);
     let seed = setting("RELIEFSCOPE_WILD_SEED", 1);
     eprintln!("seed {seed}, {actions} actions");
     let mut random = Random::new(seed as u64);
-    let mut driver = Driver::reference();
+    let mut driver = Driver::open_at(reference("bump.toml"), PIXELS_PER_POINT);
+    let mut memory = Vec::new();
     for action in 0..actions {
         act(&mut driver, &mut random);
         if action % ROUND == ROUND - 1 {
-            driver.harness.set_size(WINDOW);
-            driver.key(Key::Escape);
-            driver.settle();
+            let round = action / ROUND;
+            ask_for_a_frame(&mut driver);
             let failed = driver
                 .app()
                 .messages()
                 .find(|text| text.contains("Rendering failed"));
             assert_eq!(failed, None, "seed {seed}, action {action}");
+            memory.extend(resident_bytes());
+            if round % TOLD == TOLD - 1 {
+                let held = memory.last().map_or(0, |bytes| bytes >> 20);
+                eprintln!("seed {seed}: {} actions, {held} MiB", action + 1);
+            }
         }
     }
+    let mib = |bytes: Option<&u64>| bytes.map_or(0, |bytes| bytes >> 20);
+    let (least, most) = (mib(memory.iter().min()), mib(memory.iter().max()));
+    eprintln!("seed {seed}: {actions} actions, {least} to {most} MiB");
+    assert!(!grows(&memory), "seed {seed}: {memory:?}");
+}
+
+#[test]
+fn a_leak_would_be_noticed() {
+    let rounds = |step: u64| {
+        (0..2000)
+            .map(|i| (100 << 20) + i * step)
+            .collect::<Vec<_>>()
+    };
+    // Half a MiB in 50 actions.
+    assert!(grows(&rounds(1 << 19)));
+    assert!(!grows(&rounds(1 << 14)));
+    let up_and_down: Vec<_> = (0..2000).map(|i| (i % 7) << 30).collect();
+    assert!(!grows(&up_and_down) && !grows(&[]));
 }
 
 #[test]
