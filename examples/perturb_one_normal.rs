@@ -51,7 +51,7 @@ fn main() {
             ..MappingSettings::default()
         };
         let mut s = flat_point();
-        MaterialMapping::choose(&settings, &maps).apply(&mut s, true);
+        MaterialMapping::choose(&settings, &maps).apply_to_point(&mut s);
         let (normal, uv) = (Vec3::from(s.n_shade), Vec2::from(s.uv));
         let tilt_deg = normal.angle_between(Vec3::Z).to_degrees();
         println!(

@@ -241,8 +241,8 @@ impl Watertight {
         let mut placed: [[Lanes<f32, 16>; 2]; 3] = [[Lanes::splat(0.0); 2]; 3];
         for k in 0..3 {
             for axis in 0..2 {
-                for i in 0..16 {
-                    placed[k][axis].0[i] = flat[axis].0[corners[k][i] % 16];
+                for (i, corner) in corners[k].iter().enumerate() {
+                    placed[k][axis].0[i] = flat[axis].0[corner % 16];
                 }
             }
         }

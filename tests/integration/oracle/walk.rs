@@ -288,6 +288,52 @@ fn walks_in_lanes_come_to_what_walks_alone_come_to() {
 }
 
 #[test]
+fn ranges_over_triangles_hold_every_height_in_them() {
+    let mut random = Random::new(0x4A6E);
+    for (name, height) in maps() {
+        for wrap in Wrap::ALL {
+            let pyramid = HeightPyramid::new(&height, wrap);
+            let field = field(&height, &pyramid, wrap);
+            let [lowest, highest] = field.range().map(|d| d as f32);
+            let mut narrower = 0;
+            for case in 0..2000 {
+                let size = 10.0_f64.powf(random.between(-3.0, 0.5));
+                let at = [0; 2].map(|_| random.between(-2.0, 3.0));
+                let corner = |random: &mut Random| {
+                    let [u, v] = at.map(|c| (c + random.between(-size, size)) as f32);
+                    V2::new(u, v)
+                };
+                let corners = [0; 3].map(|_| corner(&mut random));
+                let [low, high] = field.ranges_near(corners);
+                narrower += u32::from(high - low < 0.9 * (highest - lowest));
+                for _ in 0..20 {
+                    let (a, b) = (random.between(0.0, 1.0), random.between(0.0, 1.0));
+                    let (a, b) = if a + b > 1.0 {
+                        (1.0 - a, 1.0 - b)
+                    } else {
+                        (a, b)
+                    };
+                    let [p, q, r] = corners;
+                    let (a, b) = (a as f32, b as f32);
+                    let place = p + (q - p) * a + (r - p) * b;
+                    let d = field.height.displacement(place);
+                    assert!(
+                        (low..=high).contains(&d),
+                        "{name}, {wrap:?}, case {case}: {d} is not in {low}..{high} at {place:?}"
+                    );
+                }
+            }
+            let is_large = height.width().min(height.height()) > 8;
+            let is_constant = highest - lowest < 1e-6;
+            assert!(
+                narrower > 200 || !is_large || is_constant,
+                "{name}, {wrap:?}: {narrower} are of use"
+            );
+        }
+    }
+}
+
+#[test]
 fn displacement_at_a_place_is_the_bilinear_height() {
     let mut random = Random::new(7);
     for (_, height) in maps() {
