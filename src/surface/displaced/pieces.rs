@@ -27,8 +27,7 @@ const LONG: f64 = 8192.0;
 /// Most segments along an edge.
 pub const MAX_SEGMENTS_LOG2: u8 = 14;
 
-/// Halvings and segments together may have as many bits as a float has, so that weights are exact. Edges of eight
-/// million texels get two segments for each; on longer ones they are fewer.
+/// Halvings and segments together may have as many bits as a float has, so that weights are exact.
 const BITS: u8 = 24;
 
 /// From this many pieces on they are made longer instead.
@@ -77,11 +76,15 @@ impl Cutting {
         let mut length = SHORT;
         loop {
             let cutting = Self::with_length(mesh, reliefs, fine, (places, length));
-            if cutting.halvings.is_empty()
-                || length >= LONG
-                || cutting.makes_few(mesh, reliefs, fine, places)
-            {
+            if cutting.halvings.is_empty() || cutting.makes_few(mesh, reliefs, fine, places) {
                 return cutting;
+            }
+            if length >= LONG {
+                // Texture coordinates that run on and on: triangles stay whole, and segments are longer than texels.
+                return Self {
+                    halvings: HashMap::new(),
+                    ..cutting
+                };
             }
             // Two halvings are one level of boxes.
             length *= 4.0;

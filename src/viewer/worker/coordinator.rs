@@ -35,6 +35,9 @@ const SHOW_EVERY: Duration = Duration::from_millis(100);
 /// How long a preview waits for the next edit before it is refined. In a drag edits come faster than this,
 /// and the window, too, needs the cores that refining would take.
 const REST: Duration = Duration::from_millis(20);
+/// How long a first pass may take before a newer edit ends it: what it would show is out of date, and the next may
+/// be quicker.
+const PATIENCE: Duration = Duration::from_secs(2);
 /// Samples that are shown as they come.
 const FAST_SAMPLES: u32 = 4;
 
@@ -249,11 +252,14 @@ impl Coordinator {
             return Ok(());
         };
         let (shared, generation, first) = (&*self.shared, job.generation, job.stride == 0);
+        // Whoever moves something wants to see it move: a first pass is finished, unless that takes too long.
+        let began = Instant::now();
+        let spent = job.spent;
         let stop = || {
             let outdated = || shared.newest.load(Ordering::Relaxed) != generation;
-            shared.quit.load(Ordering::Relaxed) || (!first && outdated())
+            let may_go = || !first || spent + began.elapsed() > PATIENCE;
+            shared.quit.load(Ordering::Relaxed) || (may_go() && outdated())
         };
-        let began = Instant::now();
         let end = renderer.advance(stride, &stop);
         if let Some(job) = &mut self.job {
             job.spent += began.elapsed();

@@ -488,6 +488,25 @@ fn micro_triangles_are_kept_only_where_memory_allows() {
 }
 
 #[test]
+fn texture_coordinates_that_run_on_make_no_heap_of_pieces() {
+    let map = map();
+    let pyramid = HeightPyramid::new(&map, Wrap::Repeat);
+    let height = BoundHeight::new(&map, addressing(), AMPLITUDE, -AMPLITUDE * MIDLEVEL);
+    let fields = [ReliefField::new(height, &pyramid)];
+    let reliefs = Reliefs {
+        fields: &fields,
+        weld_seams: true,
+    };
+    for scale in [1e2, 1e4, 1e6, 1e9, 1e30, f32::INFINITY] {
+        let mut mesh = torus(12, 8, |u, v| Vec2::new(u * 2.0, v));
+        mesh.uvs.iter_mut().for_each(|uv| *uv *= scale);
+        let displacement = Displacement::new(&mesh, &reliefs);
+        let mebibytes = displacement.bytes() >> 20;
+        assert!(mebibytes < 64, "{scale}: {mebibytes} MiB");
+    }
+}
+
+#[test]
 fn points_are_followed_to_the_surface_between_micro_triangles() {
     for_each_displaced(|name, displaced, map| {
         let explicit = Explicit::new(displaced.mesh, map);
