@@ -116,7 +116,11 @@ fn line_ui(ui: &mut Ui, status: &Status<'_>) {
     let text = if fps > 0.0 {
         format!("{fps:5.1} fps")
     } else {
-        format!("{:>9}", "idle")
+        let rests = matches!(
+            status.progress,
+            Progress::Converged(_) | Progress::Paused(..)
+        );
+        format!("{:>9}", if rests { "idle" } else { "working" })
     };
     let text = RichText::new(text).monospace().size(15.0);
     ui.label(text.strong().color(Color32::WHITE))
