@@ -24,7 +24,7 @@ use crate::scene::{DisplaySettings, SceneSource, View};
 /// resolution does not flicker during a drag.
 const FINER_MARGIN: f32 = 0.75;
 /// Full passes slower than this are approached through every finer preview instead of at once.
-const SLOW_PASS_MILLIS: f32 = 75.0;
+const SLOW_PASS_MILLIS: f32 = 120.0;
 /// One pixel in 16 is shown down to 30 pictures a second before fewer are; milliseconds.
 const BEARABLE_MILLIS: f32 = 30.0;
 /// The coarsest preview: one pixel in 64.
