@@ -65,7 +65,7 @@ pub trait TriangleTest: Sized {
 
 /// Corners of one lane.
 #[inline(always)]
-pub(crate) fn corners_of(corners: &Corners8, lane: usize) -> [Vec3; 3] {
+pub(super) fn corners_of(corners: &Corners8, lane: usize) -> [Vec3; 3] {
     let corner = |[x, y, z]: &[[f32; LANES]; 3]| Vec3::new(x[lane], y[lane], z[lane]);
     [
         corner(&corners[0]),

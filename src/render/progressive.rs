@@ -164,7 +164,6 @@ impl Progressive {
         if film.stride == 1 && film.samples() < goal {
             self.pool.install(|| frame.make_ready(stop));
         }
-        let frame = frame;
         let recording = self.recording;
         let yardsticks =
             (recording != Recording::Nothing).then(|| Yardsticks::new(snapshot, recording));

@@ -15,6 +15,8 @@ use reliefscope::scene::open;
 use reliefscope::texture::{RawImage, Samples};
 use serde_json::{Value, json};
 
+use crate::support::PICTURE_FORMATS;
+
 /// Tells the child which file to read …
 const FILE: &str = "RELIEFSCOPE_MEMORY_FILE";
 /// … and how many columns and rows a picture may have.
@@ -99,18 +101,6 @@ fn number(found: &Value, key: &str) -> u64 {
         .unwrap_or_else(|| panic!("{key} in {found}"))
 }
 
-const WIDE: [(&str, ImageFormat); 9] = [
-    ("png", ImageFormat::Png),
-    ("jpg", ImageFormat::Jpeg),
-    ("tga", ImageFormat::Tga),
-    ("bmp", ImageFormat::Bmp),
-    ("tif", ImageFormat::Tiff),
-    ("hdr", ImageFormat::Hdr),
-    ("exr", ImageFormat::OpenExr),
-    ("webp", ImageFormat::WebP),
-    ("gif", ImageFormat::Gif),
-];
-
 /// 3000 × 2000 texels: 12 MB of grey 16 bits, 18 MB of colours, 72 MB of floats.
 fn write_picture(path: &Path, format: ImageFormat, is_grey: bool) {
     let [width, height] = [3000, 2000];
@@ -136,7 +126,7 @@ fn write_picture(path: &Path, format: ImageFormat, is_grey: bool) {
 fn pictures_take_three_times_their_samples_and_none_beyond_the_limit() {
     let folder = tempfile::tempdir().expect("a folder");
     let grey = [("png", ImageFormat::Png), ("tif", ImageFormat::Tiff)];
-    let all = WIDE
+    let all = PICTURE_FORMATS
         .map(|f| (f, false))
         .into_iter()
         .chain(grey.map(|f| (f, true)));

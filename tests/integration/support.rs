@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DVec3, Vec2, Vec3};
+use image::ImageFormat;
 use reliefscope::geometry::bvh::Bvh;
 use reliefscope::geometry::{Normalization, TriangleAttributes, TriangleMesh};
 use reliefscope::math::LinearRgb;
@@ -11,6 +12,19 @@ use reliefscope::scene::{Camera, ModelFacts, RenderSettings, Scene, SceneSource,
 use reliefscope::shading::{Falloff, Light, LightKind, Material};
 use reliefscope::surface::mapping::MappingSettings;
 use reliefscope::texture::{MapImage, MapRole, MapSlot, RawImage, Samples};
+
+/// Pictures that are read, by the ending of their names.
+pub const PICTURE_FORMATS: [(&str, ImageFormat); 9] = [
+    ("png", ImageFormat::Png),
+    ("jpg", ImageFormat::Jpeg),
+    ("tga", ImageFormat::Tga),
+    ("bmp", ImageFormat::Bmp),
+    ("tif", ImageFormat::Tiff),
+    ("hdr", ImageFormat::Hdr),
+    ("exr", ImageFormat::OpenExr),
+    ("webp", ImageFormat::WebP),
+    ("gif", ImageFormat::Gif),
+];
 
 /// A 2×2 quad in the plane z = 0 that faces +z, its texture coordinates an affine map of x and y, with a
 /// smaller one floating above it that casts a shadow.

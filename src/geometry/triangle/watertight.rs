@@ -214,9 +214,7 @@ impl Watertight {
         let v = smaller(larger(v, 0.0), 1.0 - u);
         (near <= far && t > 0.0).then_some(TriangleHit { t, u, v })
     }
-}
 
-impl Watertight {
     /// Which of sixteen triangles the ray may pass inside of, on either side of its origin, as bits: all that it does,
     /// and those that [`TriangleTest::intersect`] must look at twice. Corners are given by their places among
     /// `points`.

@@ -217,10 +217,10 @@ impl<'a, 'm> Patch<'a, 'm> {
         1.0 / (1 << self.cut.segments_log2) as f32
     }
 
-    /// Smallest and largest displacements in the sixteen parts of a part; `places` are anchors and sizes as shares of
-    /// the piece's edges.
+    /// Smallest and largest displacements in the sixteen parts of a part, given by anchors and sizes as shares of the
+    /// piece's edges; those on seams lie in `seam_range`.
     #[inline(always)]
-    fn ranges<F: Real>(&self, reliefs: &Reliefs<'_, '_>, [a, b, s]: [F; 3]) -> [F; 2] {
+    fn ranges<F: Real>(&self, seam_range: [f32; 2], [a, b, s]: [F; 3]) -> [F; 2] {
         let corners = [
             self.weights([a, b]),
             self.weights([a + s, b]),
@@ -233,10 +233,10 @@ impl<'a, 'm> Patch<'a, 'm> {
         if self.cut.on_seam {
             // On a seam's edge heights are means with what lies on its other side.
             let zero = low.splat(0.0);
-            let [all_low, all_high] = seams::range(reliefs);
+            let [all_low, all_high] = seam_range;
             for w in corners.into_iter().flatten() {
-                low = F::select(w.eq(zero), zero.splat(all_low as f32), low);
-                high = F::select(w.eq(zero), zero.splat(all_high as f32), high);
+                low = F::select(w.eq(zero), zero.splat(all_low), low);
+                high = F::select(w.eq(zero), zero.splat(all_high), high);
             }
         }
         [low, high]
@@ -471,6 +471,8 @@ pub type Door<'a, 'm> = (&'a Reliefs<'a, 'm>, &'a Displacement);
 /// Meets pieces one after the other.
 pub struct Meeting<'a, 'm> {
     door: Door<'a, 'm>,
+    /// Displacements that none on a seam leaves.
+    seam_range: [f32; 2],
     /// Kept from one to the next only so that it need not be made anew.
     stack: [Part; STACK],
     /// What it cost.
@@ -478,14 +480,12 @@ pub struct Meeting<'a, 'm> {
 }
 
 impl<'a, 'm> Meeting<'a, 'm> {
-    pub const fn new(door: Door<'a, 'm>) -> Self {
+    pub fn new(door: Door<'a, 'm>) -> Self {
         Self {
             door,
+            seam_range: seams::range(door.0).map(|d| d as f32),
             stack: [Part::NONE; STACK],
-            counters: FineCounters {
-                parts: 0,
-                leaves: 0,
-            },
+            counters: FineCounters::default(),
         }
     }
 
@@ -527,7 +527,7 @@ impl<'a, 'm> Meeting<'a, 'm> {
                     b.get(simd, group) * per_quarter + b0,
                     s.get(simd, group) * per_quarter,
                 ];
-                let range = patch.ranges(door.0, places);
+                let range = patch.ranges(self.seam_range, places);
                 let (entry, misses) = local.meets(places, range, best.t);
                 near.set(group, entry);
                 met |= (!misses).0.to_bitmask() << (group * S::f32s::LEN);

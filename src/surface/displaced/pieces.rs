@@ -212,12 +212,12 @@ pub fn segments_log2(texels: f64) -> u8 {
     (segments as u32).next_power_of_two().ilog2() as u8
 }
 
-/// A triangle's corners on the map, in texels.
+/// A triangle on the map, in texels.
 struct Chart {
     order: [u8; 3],
     prim: u32,
-    /// The first corner, and the ways from it to the others.
-    texels: [[f64; 2]; 3],
+    /// The ways from the first corner to the others.
+    ways: [[f64; 2]; 2],
 }
 
 impl Chart {
@@ -236,13 +236,13 @@ impl Chart {
         Self {
             order,
             prim,
-            texels: [t0, way(t1), way(t2)],
+            ways: [way(t1), way(t2)],
         }
     }
 
     /// Length between two places in texels; the same both ways. 0 where texture coordinates are no numbers.
     fn length(&self, a: Place, b: Place) -> f64 {
-        let [_, along1, along2] = self.texels;
+        let [along1, along2] = self.ways;
         let [w1, w2] = [0, 1].map(|k| f64::from(a[k] - b[k]));
         let across = [0, 1].map(|k| (along1[k] * w1 + along2[k] * w2) / f64::from(WHOLE));
         let length = across[0].hypot(across[1]);

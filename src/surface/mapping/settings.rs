@@ -77,8 +77,8 @@ pub struct MappingSettings {
     /// Whether true displacement takes the mean height along edges at which texture coordinates jump, so that
     /// no crack opens there.
     pub weld_seams: bool,
-    /// Most mebibytes, of all workers together, for boxes around parts of displaced triangles, 0…1,048,576.
-    /// Fewer make tracing slower and change no pixel.
+    /// Most mebibytes for the micro-triangles of displaced surfaces, 0…1,048,576: they are kept only if all of them
+    /// fit. Without them tracing is slower and no pixel changes.
     pub displacement_memory: u32,
     /// What searches take.
     pub search: SearchSettings,

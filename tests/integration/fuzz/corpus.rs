@@ -6,6 +6,8 @@ use std::path::Path;
 
 use image::{DynamicImage, ImageBuffer, ImageFormat};
 
+use crate::support::PICTURE_FORMATS;
+
 /// What a file is read as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
@@ -37,18 +39,6 @@ pub struct Entry {
     pub format: Format,
     pub bytes: Vec<u8>,
 }
-
-const PICTURES: [(&str, ImageFormat); 9] = [
-    ("png", ImageFormat::Png),
-    ("jpg", ImageFormat::Jpeg),
-    ("tga", ImageFormat::Tga),
-    ("bmp", ImageFormat::Bmp),
-    ("tif", ImageFormat::Tiff),
-    ("hdr", ImageFormat::Hdr),
-    ("exr", ImageFormat::OpenExr),
-    ("webp", ImageFormat::WebP),
-    ("gif", ImageFormat::Gif),
-];
 
 /// Uses every material of the libraries in the corpus.
 const MODEL: &str = "mtllib case.mtl\n\
@@ -108,7 +98,7 @@ pub fn corpus() -> Vec<Entry> {
             }
         }
     }
-    for (ending, format) in PICTURES {
+    for (ending, format) in PICTURE_FORMATS {
         let format_name = Format::Picture(ending);
         all.push(Entry {
             format: format_name,

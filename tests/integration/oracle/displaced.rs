@@ -298,26 +298,32 @@ fn any_ray(random: &mut Random) -> Ray {
     }
 }
 
-/// All [`meshes`] displaced: calls `look` with their names and the map.
-fn for_each_displaced(look: impl Fn(&'static str, DisplacedMesh<'_, '_>, &HeightMap)) {
+/// Calls `look` with the relief of the [`map`], and the map.
+fn with_relief(look: impl FnOnce(Reliefs<'_, '_>, &HeightMap)) {
     let map = map();
     let pyramid = HeightPyramid::new(&map, Wrap::Repeat);
     let height = BoundHeight::new(&map, addressing(), AMPLITUDE, -AMPLITUDE * MIDLEVEL);
-    let fields = [ReliefField::new(height, &pyramid)];
     let reliefs = Reliefs {
-        fields: &fields,
+        fields: &[ReliefField::new(height, &pyramid)],
         weld_seams: true,
     };
-    for (name, mesh) in meshes() {
-        let displacement = Displacement::new(&mesh, &reliefs);
-        let displaced = DisplacedMesh {
-            mesh: &mesh,
-            reliefs,
-            displacement: &displacement,
-            micro: None,
-        };
-        look(name, displaced, &map);
-    }
+    look(reliefs, &map);
+}
+
+/// All [`meshes`] displaced: calls `look` with their names and the map.
+fn for_each_displaced(look: impl Fn(&'static str, DisplacedMesh<'_, '_>, &HeightMap)) {
+    with_relief(|reliefs, map| {
+        for (name, mesh) in meshes() {
+            let displacement = Displacement::new(&mesh, &reliefs);
+            let displaced = DisplacedMesh {
+                mesh: &mesh,
+                reliefs,
+                displacement: &displacement,
+                micro: None,
+            };
+            look(name, displaced, map);
+        }
+    });
 }
 
 #[test]
@@ -489,21 +495,15 @@ fn micro_triangles_are_kept_only_where_memory_allows() {
 
 #[test]
 fn texture_coordinates_that_run_on_make_no_heap_of_pieces() {
-    let map = map();
-    let pyramid = HeightPyramid::new(&map, Wrap::Repeat);
-    let height = BoundHeight::new(&map, addressing(), AMPLITUDE, -AMPLITUDE * MIDLEVEL);
-    let fields = [ReliefField::new(height, &pyramid)];
-    let reliefs = Reliefs {
-        fields: &fields,
-        weld_seams: true,
-    };
-    for scale in [1e2, 1e4, 1e6, 1e9, 1e30, f32::INFINITY] {
-        let mut mesh = torus(12, 8, |u, v| Vec2::new(u * 2.0, v));
-        mesh.uvs.iter_mut().for_each(|uv| *uv *= scale);
-        let displacement = Displacement::new(&mesh, &reliefs);
-        let mebibytes = displacement.bytes() >> 20;
-        assert!(mebibytes < 64, "{scale}: {mebibytes} MiB");
-    }
+    with_relief(|reliefs, _| {
+        for scale in [1e2, 1e4, 1e6, 1e9, 1e30, f32::INFINITY] {
+            let mut mesh = torus(12, 8, |u, v| Vec2::new(u * 2.0, v));
+            mesh.uvs.iter_mut().for_each(|uv| *uv *= scale);
+            let displacement = Displacement::new(&mesh, &reliefs);
+            let mebibytes = displacement.bytes() >> 20;
+            assert!(mebibytes < 64, "{scale}: {mebibytes} MiB");
+        }
+    });
 }
 
 #[test]
