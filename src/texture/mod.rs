@@ -28,7 +28,7 @@ pub use image_store::MapImage;
 pub use levels::Levels;
 pub use mips::{Look, Mips};
 pub use normal_map::NormalMap;
-pub use pyramid::{HeightPyramid, Level, StoredHeights};
+pub use pyramid::{HeightPyramid, Layout, StoredHeights};
 pub use raw_image::{RawImage, Samples};
 pub use slope_moments::SlopeMoments;
 pub use slot::{Channel, MapRole, MapSlot, NormalSpace};

@@ -57,13 +57,6 @@ impl Axis {
         self.start + self.rate * tau
     }
 
-    /// `[start, rate, 1/|rate|, base, local]`, as a walk in vector lanes takes them over.
-    #[inline(always)]
-    pub fn parts(&self) -> [f64; 5] {
-        let local = f64::from(self.local);
-        [self.start, self.rate, self.inv_rate, self.base, local]
-    }
-
     /// Place in the cell that the walk is in, `[0, 1]`.
     #[inline(always)]
     pub fn fraction(&self, tau: f64) -> f64 {

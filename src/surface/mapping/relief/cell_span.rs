@@ -62,7 +62,7 @@ impl<F: Real> CellSpan<F> {
 
     /// Whether they may lie in more than two nodes of a level.
     #[inline(always)]
-    pub(super) fn is_wider(&self, level: usize) -> F::Mask {
+    pub(super) fn is_wider(&self, level: u32) -> F::Mask {
         let count = self.count();
         // A node and one cell more begin in at most two nodes, wherever they begin.
         self.known & count.splat(((1_u32 << level) + 1) as f32).lt(count)
@@ -71,9 +71,9 @@ impl<F: Real> CellSpan<F> {
     /// The nodes of a level that the first and the last cell lie in, and whether there are no others between: across
     /// the border there may be, if that cuts a node off.
     #[inline(always)]
-    pub(super) fn nodes(&self, level: usize) -> ([F::Bits; 2], F::Mask) {
-        let by = level as u32;
-        let ends = [self.first.to_index().shr(by), self.last.to_index().shr(by)];
+    pub(super) fn nodes(&self, level: u32) -> ([F::Bits; 2], F::Mask) {
+        let ends = [self.first.to_index(), self.last.to_index()];
+        let ends = [ends[0].shr(level), ends[1].shr(level)];
         let is_even = self.wrap == Wrap::Repeat && self.size.is_multiple_of(1 << level);
         let known = if is_even {
             self.known

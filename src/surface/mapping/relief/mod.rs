@@ -3,14 +3,17 @@
 //! - `shell`: the view ray through the layer that the relief fills
 //! - `march`: fixed numbers of samples, and their refinements
 //! - `cones`: steps as wide as a map of cones allows
-//! - `walk`, `axis`: cell by cell through a pyramid of extremes, exact; `walk_lanes`: many walks in step
+//! - `walk`, `axis`, `parabola`: cell by cell through a pyramid of extremes, exact
+//! - `walk_lanes`, `lane_axis`: many walks in step
 //! - `exact`: the walk for surface points, for the eye and for lights
 
 mod axis;
 mod cell_span;
 mod cones;
 mod exact;
+mod lane_axis;
 mod march;
+mod parabola;
 mod shell;
 mod walk;
 mod walk_lanes;

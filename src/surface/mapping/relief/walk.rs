@@ -2,11 +2,12 @@
 
 use super::axis::Axis;
 use super::cell_span::{CellSpan, extremes, fractions};
-use super::walk_lanes::walk_all;
+use super::parabola::first_not_above;
+use super::walk_lanes::{Stored, walk_all};
 use crate::math::simd::SimdLevel;
 use crate::math::{Bits, Mask as _, Real, V2};
 use crate::surface::mapping::BoundHeight;
-use crate::texture::{HeightPyramid, Level, StoredHeights, Wrap};
+use crate::texture::{HeightPyramid, Layout, StoredHeights, Wrap};
 
 /// A relief with the pyramid over it, made ready for walks.
 #[derive(Debug, Clone, Copy)]
@@ -14,9 +15,7 @@ pub struct ReliefField<'a> {
     /// Displacement over the chart.
     pub height: BoundHeight<'a>,
     stored: StoredHeights<'a>,
-    levels: &'a [Level],
-    /// Columns and rows.
-    size: [u32; 2],
+    layout: Layout,
     /// Displacement is `stored · factor + offset`.
     factor: f64,
     offset: f64,
@@ -111,7 +110,7 @@ impl Walk {
 }
 
 /// No walk takes more steps, whatever the map.
-const STEP_CAP: f64 = 4_194_304.0;
+pub(super) const STEP_CAP: f64 = 4_194_304.0;
 
 /// Farther from the origin than this many texels nothing is looked for: cells could not be told apart.
 const FARTHEST: f64 = 1e12;
@@ -120,7 +119,10 @@ impl<'a> ReliefField<'a> {
     /// Ties a relief to the pyramid of its map; `None` for the pyramid of another.
     #[must_use]
     pub fn new(height: BoundHeight<'a>, pyramid: &'a HeightPyramid) -> Option<Self> {
-        let stored = pyramid.stored(height.map)?;
+        if !pyramid.fits(height.map) {
+            return None;
+        }
+        let stored = pyramid.stored();
         let unit = match stored {
             StoredHeights::U16(..) => 1.0 / 65_535.0,
             StoredHeights::F32(..) => 1.0,
@@ -128,19 +130,16 @@ impl<'a> ReliefField<'a> {
         let mut field = Self {
             height,
             stored,
-            levels: pyramid.levels(),
-            size: [height.map.width(), height.map.height()],
+            layout: pyramid.layout(),
             factor: f64::from(height.scale) * unit,
             offset: f64::from(height.offset),
             range: [0.0; 2],
         };
-        let top = field.levels.last()?.start;
-        let [a, b] = match stored {
-            StoredHeights::U16(_, nodes) => nodes[top].map(f64::from),
-            StoredHeights::F32(_, nodes) => nodes[top].map(f64::from),
-        }
-        .map(|stored| stored * field.factor + field.offset);
-        field.range = [a.min(b), a.max(b)];
+        let top = [[0; 3]; 2];
+        field.range = match stored {
+            StoredHeights::U16(all) => field.with(all).extremes(field.layout.top, top),
+            StoredHeights::F32(all) => field.with(all).extremes(field.layout.top, top),
+        };
         Some(field)
     }
 
@@ -155,8 +154,8 @@ impl<'a> ReliefField<'a> {
     pub fn texels_per_uv(&self) -> [f64; 2] {
         let scale = self.height.addressing.scale;
         [
-            f64::from(scale.x) * f64::from(self.size[0]),
-            f64::from(scale.y) * f64::from(self.size[1]),
+            f64::from(scale.x) * f64::from(self.layout.size[0]),
+            f64::from(scale.y) * f64::from(self.layout.size[1]),
         ]
     }
 
@@ -166,8 +165,8 @@ impl<'a> ReliefField<'a> {
         let offset = self.height.addressing.offset;
         let [x, y] = self.texels_per_uv();
         [
-            uv[0] * x + f64::from(offset.x) * f64::from(self.size[0]) - 0.5,
-            uv[1] * y + f64::from(offset.y) * f64::from(self.size[1]) - 0.5,
+            uv[0] * x + f64::from(offset.x) * f64::from(self.layout.size[0]) - 0.5,
+            uv[1] * y + f64::from(offset.y) * f64::from(self.layout.size[1]) - 0.5,
         ]
     }
 
@@ -178,8 +177,8 @@ impl<'a> ReliefField<'a> {
             return [0.0; 2];
         }
         match self.stored {
-            StoredHeights::U16(texels, nodes) => self.with(texels, nodes).slope(place),
-            StoredHeights::F32(texels, nodes) => self.with(texels, nodes).slope(place),
+            StoredHeights::U16(all) => self.with(all).slope(place),
+            StoredHeights::F32(all) => self.with(all).slope(place),
         }
     }
 
@@ -194,7 +193,7 @@ impl<'a> ReliefField<'a> {
             let [a, b, c] = places.map(|place| place[k]);
             let (low, high) = (a.min(b).min(c), a.max(b).max(c));
             let margin = 0.01 + low.abs().max(high.abs()) * 1e-6;
-            let n = self.size[k];
+            let n = self.layout.size[k];
             let known = low.abs().max(high.abs()) < FARTHEST;
             if !known || self.height.addressing.wrap != Wrap::Repeat {
                 return self.range;
@@ -212,7 +211,7 @@ impl<'a> ReliefField<'a> {
         let level = widest.next_power_of_two().ilog2();
         for k in 0..2 {
             let [first, last] = cells[k];
-            let end = self.size[k] - 1;
+            let end = self.layout.size[k] - 1;
             // As many cells as a node has lie in at most two nodes; across the border of the picture, in
             // at most three.
             nodes[k] = if first <= last {
@@ -222,8 +221,8 @@ impl<'a> ReliefField<'a> {
             };
         }
         match self.stored {
-            StoredHeights::U16(texels, all) => self.with(texels, all).extremes(level, nodes),
-            StoredHeights::F32(texels, all) => self.with(texels, all).extremes(level, nodes),
+            StoredHeights::U16(all) => self.with(all).extremes(level, nodes),
+            StoredHeights::F32(all) => self.with(all).extremes(level, nodes),
         }
     }
 
@@ -240,18 +239,21 @@ impl<'a> ReliefField<'a> {
             height.addressing.st(c),
         );
         let like = a.x;
-        let x = CellSpan::new([a.x, b.x, c.x], self.size[0], height.addressing.wrap);
-        let y = CellSpan::new([a.y, b.y, c.y], self.size[1], height.addressing.wrap);
-        let top = self.levels.len() - 1;
+        let x = CellSpan::new([a.x, b.x, c.x], self.layout.size[0], height.addressing.wrap);
+        let y = CellSpan::new([a.y, b.y, c.y], self.layout.size[1], height.addressing.wrap);
+        let top = self.layout.top;
         let mut level = 0;
         while level < top && (x.is_wider(level) | y.is_wider(level)).any() {
             level += 1;
         }
-        let Level { start, columns, .. } = self.levels[level];
+        let squares = self.layout.level(level);
         let ([i0, i1], x_known) = x.nodes(level);
         let ([j0, j1], y_known) = y.nodes(level);
-        let row0 = j0.times(columns).plus(start as u32);
-        let row1 = j1.times(columns).plus(start as u32);
+        // No map has 2³² texels.
+        let [right, down] = squares.steps.map(|step| step as u32);
+        let (i0, i1) = (i0.times(right), i1.times(right));
+        let row0 = j0.times(down).plus(squares.first as u32);
+        let row1 = j1.times(down).plus(squares.first as u32);
         let nodes = [
             row0.plus_each(i0),
             row0.plus_each(i1),
@@ -259,16 +261,16 @@ impl<'a> ReliefField<'a> {
             row1.plus_each(i1),
         ];
         let [low, high] = match self.stored {
-            StoredHeights::U16(_, all) => {
+            StoredHeights::U16(all) => {
                 let [[a], [b], [c], [d]] = F::Bits::gather(nodes, |node| {
-                    let [low, high] = all[node as usize];
+                    let [low, high] = squares.extremes(all, node as usize);
                     [u32::from(low) | u32::from(high) << 16]
                 });
                 extremes([fractions(a), fractions(b), fractions(c), fractions(d)])
             }
-            StoredHeights::F32(_, all) => {
+            StoredHeights::F32(all) => {
                 let [[a, b], [c, d], [e, f], [g, h]] = F::Bits::gather(nodes, |node| {
-                    let [low, high] = all[node as usize];
+                    let [low, high] = squares.extremes(all, node as usize);
                     [low.to_bits(), high.to_bits()]
                 });
                 extremes([
@@ -298,8 +300,8 @@ impl<'a> ReliefField<'a> {
             return 0.0;
         }
         match self.stored {
-            StoredHeights::U16(texels, nodes) => self.with(texels, nodes).displacement(place),
-            StoredHeights::F32(texels, nodes) => self.with(texels, nodes).displacement(place),
+            StoredHeights::U16(all) => self.with(all).displacement(place),
+            StoredHeights::F32(all) => self.with(all).displacement(place),
         }
     }
 
@@ -317,15 +319,15 @@ impl<'a> ReliefField<'a> {
             return Walk::NONE;
         }
         match self.stored {
-            StoredHeights::U16(texels, nodes) => self.with(texels, nodes).walk(ray),
-            StoredHeights::F32(texels, nodes) => self.with(texels, nodes).walk(ray),
+            StoredHeights::U16(all) => self.with(all).walk(ray),
+            StoredHeights::F32(all) => self.with(all).walk(ray),
         }
     }
 
     /// Steps after which the walk of a ray is given up.
     #[must_use]
     pub fn step_cap(&self, ray: &ReliefRay) -> u32 {
-        step_cap(self.size, ray)
+        step_cap(self.layout.size, ray)
     }
 
     /// [`Self::walk`] for many rays, with the instructions of `level`: the same bits.
@@ -335,21 +337,15 @@ impl<'a> ReliefField<'a> {
     pub fn walk_all(&self, level: SimdLevel, rays: &[ReliefRay], walks: &mut [Walk]) {
         assert_eq!(rays.len(), walks.len(), "one place for each ray");
         match self.stored {
-            StoredHeights::U16(texels, nodes) => {
-                walk_all(&self.with(texels, nodes), level, rays, walks);
-            }
-            StoredHeights::F32(texels, nodes) => {
-                walk_all(&self.with(texels, nodes), level, rays, walks);
-            }
+            StoredHeights::U16(all) => walk_all(&self.with(all), level, rays, walks),
+            StoredHeights::F32(all) => walk_all(&self.with(all), level, rays, walks),
         }
     }
 
-    pub(super) const fn with<T>(&self, texels: &'a [T], nodes: &'a [[T; 2]]) -> Typed<'a, T> {
+    const fn with<T>(&self, numbers: &'a [T]) -> Typed<'a, T> {
         Typed {
-            texels,
-            nodes,
-            levels: self.levels,
-            size: self.size,
+            numbers,
+            layout: self.layout,
             wrap: self.height.addressing.wrap,
             factor: self.factor,
             offset: self.offset,
@@ -359,20 +355,19 @@ impl<'a> ReliefField<'a> {
 
 /// A relief whose kind of number is known.
 pub(super) struct Typed<'a, T> {
-    pub(super) texels: &'a [T],
-    pub(super) nodes: &'a [[T; 2]],
-    pub(super) levels: &'a [Level],
-    pub(super) size: [u32; 2],
+    /// Texels and nodes.
+    pub(super) numbers: &'a [T],
+    pub(super) layout: Layout,
     pub(super) wrap: Wrap,
     pub(super) factor: f64,
     pub(super) offset: f64,
 }
 
-impl<T: Copy + Into<f64>> Typed<'_, T> {
+impl<T: Stored> Typed<'_, T> {
     fn displacement(&self, [x, y]: [f64; 2]) -> f64 {
         let (x, y) = (
-            Axis::new(self.size[0], x, 0.0),
-            Axis::new(self.size[1], y, 0.0),
+            Axis::new(self.layout.size[0], x, 0.0),
+            Axis::new(self.layout.size[1], y, 0.0),
         );
         let [a, b, c, d] = self.corners(&x, &y);
         let (fx, fy) = (x.fraction(0.0), y.fraction(0.0));
@@ -381,8 +376,8 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
 
     fn slope(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (x, y) = (
-            Axis::new(self.size[0], x, 0.0),
-            Axis::new(self.size[1], y, 0.0),
+            Axis::new(self.layout.size[0], x, 0.0),
+            Axis::new(self.layout.size[1], y, 0.0),
         );
         let [a, b, c, d] = self.corners(&x, &y);
         let twist = a - b - c + d;
@@ -394,11 +389,7 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
 
     /// Smallest and largest displacement over the nodes that hold some cells of the picture.
     fn extremes(&self, level: u32, [columns, rows]: [[u32; 3]; 2]) -> [f64; 2] {
-        let Level {
-            start,
-            columns: width,
-            ..
-        } = self.levels[level as usize];
+        let squares = self.layout.level(level);
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for (at, j) in rows.into_iter().enumerate() {
             if at > 0 && j >> level == rows[at - 1] >> level {
@@ -408,8 +399,9 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
                 if at > 0 && i >> level == columns[at - 1] >> level {
                     continue;
                 }
-                let node = start + (j >> level) as usize * width as usize + (i >> level) as usize;
-                let [a, b] = self.nodes[node].map(|stored| self.displaced(stored));
+                let at = squares.at([i >> level, j >> level]);
+                let [a, b] = squares.extremes(self.numbers, at);
+                let [a, b] = [self.displaced(a), self.displaced(b)];
                 low = low.min(a.min(b));
                 high = high.max(a.max(b));
             }
@@ -422,10 +414,10 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
         let line = [ray.z * sign, ray.z_rate * sign];
         let inv_sinking = 1.0 / -line[1];
         let end = ray.end;
-        let mut x = Axis::new(self.size[0], ray.start[0], ray.rate[0]);
-        let mut y = Axis::new(self.size[1], ray.start[1], ray.rate[1]);
+        let mut x = Axis::new(self.layout.size[0], ray.start[0], ray.rate[0]);
+        let mut y = Axis::new(self.layout.size[1], ray.start[1], ray.rate[1]);
         let cap = self.step_cap(ray);
-        let top = self.top();
+        let top = self.layout.top;
         let mut level = start_level(ray, top);
         let mut tau = 0.0_f64;
         let mut steps = 0;
@@ -484,11 +476,6 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
         }
     }
 
-    /// The level with a single node.
-    pub(super) const fn top(&self) -> u32 {
-        self.levels.len() as u32 - 1
-    }
-
     #[inline(always)]
     fn displaced(&self, stored: T) -> f64 {
         stored.into() * self.factor + self.offset
@@ -497,15 +484,10 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
     /// The largest displacement over the square of a cell of the picture, seen from the side of `sign`.
     #[inline(always)]
     fn high(&self, level: u32, [i, j]: [u32; 2], sign: f64) -> f64 {
-        self.displaced(self.farthest(level, [i >> level, j >> level], sign)) * sign
-    }
-
-    /// The stored height behind it, for a node of the level.
-    #[inline(always)]
-    pub(super) fn farthest(&self, level: u32, [i, j]: [u32; 2], sign: f64) -> T {
-        let Level { start, columns, .. } = self.levels[level as usize];
-        let [low, high] = self.nodes[start + j as usize * columns as usize + i as usize];
-        if self.factor * sign >= 0.0 { high } else { low }
+        let squares = self.layout.level(level);
+        let [low, high] = squares.extremes(self.numbers, squares.at([i >> level, j >> level]));
+        let stored = if self.factor * sign >= 0.0 { high } else { low };
+        self.displaced(stored) * sign
     }
 
     /// [`Self::high`] over up to four squares.
@@ -519,17 +501,8 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
     #[inline(always)]
     fn corners(&self, x: &Axis, y: &Axis) -> [f64; 4] {
         let ([i0, i1], [j0, j1]) = (x.texels(self.wrap), y.texels(self.wrap));
-        let (row0, row1) = (
-            j0 as usize * self.size[0] as usize,
-            j1 as usize * self.size[0] as usize,
-        );
-        let (i0, i1) = (i0 as usize, i1 as usize);
-        [
-            self.displaced(self.texels[row0 + i0]),
-            self.displaced(self.texels[row0 + i1]),
-            self.displaced(self.texels[row1 + i0]),
-            self.displaced(self.texels[row1 + i1]),
-        ]
+        let texel = |i, j| self.displaced(self.numbers[self.layout.texel(i, j)]);
+        [texel(i0, j0), texel(i1, j0), texel(i0, j1), texel(i1, j1)]
     }
 
     /// How far after `tau`, but not beyond `len`, the ray meets the bilinear patch of its cell. `line` is
@@ -555,8 +528,8 @@ impl<T: Copy + Into<f64>> Typed<'_, T> {
     }
 
     /// Twice what the finest possible walk could take, ups and downs included.
-    pub(super) fn step_cap(&self, ray: &ReliefRay) -> u32 {
-        step_cap(self.size, ray)
+    fn step_cap(&self, ray: &ReliefRay) -> u32 {
+        step_cap(self.layout.size, ray)
     }
 }
 
@@ -591,65 +564,11 @@ fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The level whose squares are about as wide as the way to go: finer ones would be climbed, coarser ones
+/// The level whose squares are about a quarter as wide as the way to go: finer ones would be climbed, coarser ones
 /// descended, for nothing.
 #[inline(always)]
-pub(super) fn start_level(ray: &ReliefRay, top: u32) -> u32 {
+fn start_level(ray: &ReliefRay, top: u32) -> u32 {
     let texels = ray.rate[0].abs().max(ray.rate[1].abs()) * ray.end;
-    (texels.min(1e9) as u32).max(1).ilog2().min(top)
-}
-
-/// The first σ in `[0, len]` at which `a σ² + b σ + c` is not above 0.
-#[inline(always)]
-fn first_not_above(a: f64, b: f64, c: f64, len: f64) -> Option<f64> {
-    if c <= 0.0 {
-        return Some(0.0);
-    }
-    let at_end = (a * len + b) * len + c;
-    // A parabola that ends above 0 can only have dipped below on the way if it opens upwards.
-    let dips = || a > 0.0 && b < 0.0 && -b < 2.0 * a * len && b * b >= 4.0 * a * c;
-    if at_end > 0.0 && !dips() {
-        return None;
-    }
-    let root = (b * b - 4.0 * a * c).max(0.0).sqrt();
-    // Without cancellation; of two positive roots the smaller.
-    let first = if b < 0.0 {
-        2.0 * c / (root - b)
-    } else {
-        -(b + root) / (2.0 * a)
-    };
-    Some(if first.is_finite() {
-        first.clamp(0.0, len)
-    } else {
-        len
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::first_not_above;
-
-    #[test]
-    fn the_first_root_is_found_from_above_only() {
-        let close = |found: Option<f64>, root: f64| {
-            assert!((found.expect("a root") - root).abs() < 1e-14, "{found:?}");
-        };
-        close(first_not_above(0.0, -1.0, 0.25, 1.0), 0.25);
-        close(first_not_above(1.0, -1.0, 0.16, 1.0), 0.2);
-        close(first_not_above(-1.0, 0.0, 0.25, 1.0), 0.5);
-        close(first_not_above(-1.0, 0.1, 0.3, 1.0), 0.6);
-        assert_eq!(first_not_above(1.0, -1.0, 0.26, 1.0), None, "no root");
-        assert_eq!(
-            first_not_above(1.0, -1.0, 0.16, 0.1),
-            None,
-            "beyond the end"
-        );
-        assert_eq!(
-            first_not_above(0.0, 1.0, -0.5, 1.0),
-            Some(0.0),
-            "below already"
-        );
-        assert_eq!(first_not_above(0.0, 0.0, 0.5, 1.0), None);
-        assert_eq!(first_not_above(0.0, -0.5, 0.5, 1.0), Some(1.0));
-    }
+    let level = (texels.min(1e9) as u32).max(1).ilog2();
+    level.saturating_sub(2).min(top)
 }

@@ -1,14 +1,16 @@
 //! Many exact walks in step, one in each vector lane: the twin of `walk`, with the same bits.
 //!
 //! A walk takes about ten steps and no two take the same turns, so that one after the other they mostly
-//! wait for mispredicted branches. In lanes every step does what any walk may need, under masks. A lane
+//! wait for mispredicted branches. In lanes every step does what any walk may need, under masks and without a
+//! branch; and two vectors of walks go by turns, so that one computes while the other waits for memory. A lane
 //! whose walk is over takes the next ray from the list.
 
-use super::axis::Axis;
-use super::walk::{ReliefRay, Typed, Walk, start_level};
+use super::lane_axis::LaneAxis;
+use super::parabola::{first_not_above, is_not_above};
+use super::walk::{ReliefRay, STEP_CAP, Typed, Walk};
 use crate::math::simd::{
-    ExtractToken as _, Kernel, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdLevel,
-    SimdMask as _,
+    Bytes as _, ExtractToken as _, Kernel, Select as _, Simd, SimdBase as _, SimdFloat as _,
+    SimdLevel, SimdMask as _,
 };
 use crate::texture::Wrap;
 
@@ -18,8 +20,69 @@ const MAX_LANES: usize = 8;
 /// A double for each lane, in memory.
 type Row = [f64; MAX_LANES];
 
+/// Added to whole numbers from 0 to 2³², it leaves them in the lower half of a double's bits.
+const WHOLE: f64 = 4_503_599_627_370_496.0;
+
+/// Numbers that heights are stored in.
+pub(super) trait Stored: Copy + PartialOrd + Into<f64> {
+    /// For every lane the numbers at `first`, after it, at `second` and after it. Indices are [`WHOLE`] doubles.
+    fn fours<S: Simd>(simd: S, numbers: &[Self], at: [&Row; 2]) -> [S::f64s; 4];
+}
+
+/// A number and the one after it.
+#[inline(always)]
+fn pair<T: Copy>(numbers: &[T], whole: f64) -> [T; 2] {
+    let at = whole.to_bits() as u32 as usize;
+    let both = &numbers[at..at + 2];
+    [both[0], both[1]]
+}
+
+impl Stored for u16 {
+    #[inline(always)]
+    fn fours<S: Simd>(simd: S, numbers: &[Self], [first, second]: [&Row; 2]) -> [S::f64s; 4] {
+        let mut packed = [0_u64; MAX_LANES];
+        for lane in 0..S::f64s::LEN {
+            let ([a, b], [c, d]) = (pair(numbers, first[lane]), pair(numbers, second[lane]));
+            let upper = u64::from(a) | u64::from(b) << 16;
+            let lower = u64::from(c) | u64::from(d) << 16;
+            packed[lane] = upper | lower << 32;
+        }
+        let packed = S::u64s::from_slice(simd, &packed[..S::f64s::LEN]);
+        let low = S::u64s::splat(simd, 0xffff);
+        [
+            whole::<S>(simd, packed & low),
+            whole::<S>(simd, (packed >> 16) & low),
+            whole::<S>(simd, (packed >> 32) & low),
+            whole::<S>(simd, packed >> 48),
+        ]
+    }
+}
+
+/// Small whole numbers as doubles.
+#[inline(always)]
+fn whole<S: Simd>(simd: S, x: S::u64s) -> S::f64s {
+    let exponent = S::u64s::splat(simd, WHOLE.to_bits());
+    (x | exponent).bitcast::<S::f64s>() - WHOLE
+}
+
+impl Stored for f32 {
+    #[inline(always)]
+    fn fours<S: Simd>(simd: S, numbers: &[Self], [first, second]: [&Row; 2]) -> [S::f64s; 4] {
+        let mut rows = [[0.0; MAX_LANES]; 4];
+        for lane in 0..S::f64s::LEN {
+            let ([a, b], [c, d]) = (pair(numbers, first[lane]), pair(numbers, second[lane]));
+            rows[0][lane] = f64::from(a);
+            rows[1][lane] = f64::from(b);
+            rows[2][lane] = f64::from(c);
+            rows[3][lane] = f64::from(d);
+        }
+        let [a, b, c, d] = &rows;
+        [load(simd, a), load(simd, b), load(simd, c), load(simd, d)]
+    }
+}
+
 /// Walks all rays.
-pub(super) fn walk_all<T: Copy + Into<f64>>(
+pub(super) fn walk_all<T: Stored>(
     relief: &Typed<'_, T>,
     level: SimdLevel,
     rays: &[ReliefRay],
@@ -49,206 +112,228 @@ struct WalkAll<'a, T> {
     walks: &'a mut [Walk],
 }
 
-impl<T: Copy + Into<f64>> Kernel for WalkAll<'_, T> {
+impl<T: Stored> Kernel for WalkAll<'_, T> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let width = S::f64s::LEN;
-        let all = u64::MAX >> (64 - width);
-        let mut lanes = Lanes::idle(simd);
-        let mut jobs = [0_usize; MAX_LANES];
-        let (mut next, mut busy) = (0, 0_u64);
+        let relief = LaneRelief::new(simd, self.relief);
+        let mut list = List {
+            rays: self.rays,
+            walks: self.walks,
+            next: 0,
+        };
+        let (mut a, mut b) = (Group::idle(simd), Group::idle(simd));
         loop {
-            // Taking rays on costs as much as a step: not for every single lane.
-            let free = (all & !busy).count_ones() as usize;
-            if next < self.rays.len() && 4 * free >= width {
-                let mut seeds = Seeds::NONE;
-                let mut taken = 0;
-                for (lane, job) in jobs.iter_mut().enumerate().take(width) {
-                    if busy >> lane & 1 != 0 {
-                        continue;
-                    }
-                    while let Some(ray) = self.rays.get(next) {
-                        next += 1;
-                        if ray.is_near() {
-                            seeds.put(lane, self.relief, ray);
-                            *job = next - 1;
-                            taken |= 1 << lane;
-                            break;
-                        }
-                        self.walks[next - 1] = Walk::NONE;
-                    }
-                }
-                lanes.take(simd, taken, &seeds);
-                busy |= taken;
-            }
-            if busy == 0 {
+            a.refill(simd, &relief, &mut list);
+            b.refill(simd, &relief, &mut list);
+            if a.busy | b.busy == 0 {
                 return;
             }
-            let done = lanes.step(simd, self.relief, busy);
-            let mut ended = done.ended & busy;
-            busy &= !ended;
-            while ended != 0 {
-                let lane = ended.trailing_zeros() as usize % MAX_LANES;
-                ended &= ended - 1;
-                self.walks[jobs[lane]] = Walk {
-                    at: (done.found >> lane & 1 != 0).then(|| done.at[lane]),
-                    steps: done.steps[lane] as u32,
-                    capped: done.capped >> lane & 1 != 0,
-                };
-            }
+            a.busy = a.lanes.step(simd, &relief);
+            b.busy = b.lanes.step(simd, &relief);
         }
     }
 }
 
-/// What lanes that take rays on start with.
+/// Rays still to walk, and what came of the others.
+struct List<'a> {
+    rays: &'a [ReliefRay],
+    walks: &'a mut [Walk],
+    next: usize,
+}
+
+/// As many walks as a vector has lanes.
+struct Group<S: Simd> {
+    lanes: Lanes<S>,
+    /// The ray of each lane.
+    jobs: [usize; MAX_LANES],
+    /// Lanes with a ray.
+    taken: u64,
+    /// Those of them whose walk is not over.
+    busy: u64,
+}
+
+impl<S: Simd> Group<S> {
+    #[inline(always)]
+    fn idle(simd: S) -> Self {
+        Self {
+            lanes: Lanes::idle(simd),
+            jobs: [0; MAX_LANES],
+            taken: 0,
+            busy: 0,
+        }
+    }
+
+    /// Hands back what ended and takes new rays on. Both cost as much as a step: not for every single lane.
+    #[inline(always)]
+    fn refill<T: Stored>(&mut self, simd: S, relief: &LaneRelief<'_, S, T>, list: &mut List<'_>) {
+        let width = S::f64s::LEN;
+        let free = width - self.busy.count_ones() as usize;
+        let waiting = list.next < list.rays.len();
+        if (waiting && 8 * free >= 3 * width) || (self.busy == 0 && self.taken != 0) {
+            self.hand_back(list.walks);
+            self.take_on(simd, relief, list);
+        }
+    }
+
+    #[inline(always)]
+    fn hand_back(&mut self, walks: &mut [Walk]) {
+        let mut ended = self.taken & !self.busy;
+        self.taken &= !ended;
+        if ended == 0 {
+            return;
+        }
+        let results = &self.lanes.results;
+        let (found, capped) = (results.found.to_bitmask(), results.capped.to_bitmask());
+        let (steps, tau, len) = (
+            store::<S>(results.steps),
+            store::<S>(results.tau),
+            store::<S>(results.len),
+        );
+        let [a, b, c] = results.parabola;
+        let (a, b, c) = (store::<S>(a), store::<S>(b), store::<S>(c));
+        while ended != 0 {
+            let lane = ended.trailing_zeros() as usize % MAX_LANES;
+            ended &= ended - 1;
+            let at = if found >> lane & 1 != 0 {
+                first_not_above(a[lane], b[lane], c[lane], len[lane]).map(|after| tau[lane] + after)
+            } else {
+                None
+            };
+            walks[self.jobs[lane]] = Walk {
+                at,
+                steps: steps[lane] as u32,
+                capped: capped >> lane & 1 != 0,
+            };
+        }
+    }
+
+    #[inline(always)]
+    fn take_on<T: Stored>(&mut self, simd: S, relief: &LaneRelief<'_, S, T>, list: &mut List<'_>) {
+        let mut seeds = Seeds::NONE;
+        let mut free = !self.taken & (u64::MAX >> (64 - S::f64s::LEN));
+        let mut taken = 0;
+        while free != 0 {
+            let Some(ray) = list.rays.get(list.next) else {
+                break;
+            };
+            let lane = free.trailing_zeros() as usize % MAX_LANES;
+            if ray.is_near() {
+                seeds.put(lane, ray);
+                self.jobs[lane] = list.next;
+                taken |= free & free.wrapping_neg();
+                free &= free - 1;
+            } else {
+                list.walks[list.next] = Walk::NONE;
+            }
+            list.next += 1;
+        }
+        self.lanes.take(simd, relief, taken, &seeds);
+        self.taken |= taken;
+        self.busy |= taken;
+    }
+}
+
+/// Rays for lanes to take on.
 struct Seeds {
-    axes: [[Row; 5]; 2],
+    start: [Row; 2],
+    rate: [Row; 2],
     line: [Row; 2],
-    inv_sinking: Row,
     sign: Row,
     end: Row,
-    size: Row,
-    cap: Row,
 }
 
 impl Seeds {
     const NONE: Self = Self {
-        axes: [[[0.0; MAX_LANES]; 5]; 2],
+        start: [[0.0; MAX_LANES]; 2],
+        rate: [[0.0; MAX_LANES]; 2],
         line: [[0.0; MAX_LANES]; 2],
-        inv_sinking: [1.0; MAX_LANES],
         sign: [1.0; MAX_LANES],
         end: [0.0; MAX_LANES],
-        size: [1.0; MAX_LANES],
-        cap: [0.0; MAX_LANES],
     };
 
     #[inline(always)]
-    fn put<T: Copy + Into<f64>>(&mut self, lane: usize, relief: &Typed<'_, T>, ray: &ReliefRay) {
+    fn put(&mut self, lane: usize, ray: &ReliefRay) {
         for k in 0..2 {
-            let parts = Axis::new(relief.size[k], ray.start[k], ray.rate[k]).parts();
-            for (row, part) in self.axes[k].iter_mut().zip(parts) {
-                row[lane] = part;
-            }
+            self.start[k][lane] = ray.start[k];
+            self.rate[k][lane] = ray.rate[k];
         }
+        self.line[0][lane] = ray.z;
+        self.line[1][lane] = ray.z_rate;
         self.sign[lane] = ray.side.sign();
-        self.line[0][lane] = ray.z * ray.side.sign();
-        self.line[1][lane] = ray.z_rate * ray.side.sign();
-        self.inv_sinking[lane] = 1.0 / -self.line[1][lane];
         self.end[lane] = ray.end;
-        self.size[lane] = f64::from(1 << start_level(ray, relief.top()));
-        self.cap[lane] = f64::from(relief.step_cap(ray));
     }
 }
 
-/// What a step came to: bits for lanes.
-struct Done {
-    ended: u64,
-    found: u64,
-    capped: u64,
-    at: Row,
-    steps: Row,
-}
-
-/// [`Axis`] in lanes; cells are whole numbers in doubles.
-#[derive(Clone, Copy)]
-struct LaneAxis<S: Simd> {
-    n: S::f64s,
-    start: S::f64s,
-    rate: S::f64s,
-    inv_rate: S::f64s,
-    base: S::f64s,
-    local: S::f64s,
-}
-
-/// The square along one axis: first cell and the one after the last.
-#[derive(Clone, Copy)]
-struct LaneSpan<S: Simd> {
-    /// Number of the square.
-    square: S::f64s,
-    first: S::f64s,
+/// What all walks over a relief ask for.
+struct LaneRelief<'a, S: Simd, T> {
+    numbers: &'a [T],
+    n: [S::f64s; 2],
+    factor: S::f64s,
+    offset: S::f64s,
+    /// Side of the square of the top level.
+    top: S::f64s,
+    texel_row: S::f64s,
+    node_steps: [S::f64s; 2],
     end: S::f64s,
+    twice: S::f64s,
 }
 
-impl<S: Simd> LaneAxis<S> {
+impl<'a, S: Simd, T: Stored> LaneRelief<'a, S, T> {
     #[inline(always)]
-    fn take(&mut self, simd: S, taken: S::mask64s, parts: &[Row; 5]) {
-        self.start = taken.select(load(simd, &parts[0]), self.start);
-        self.rate = taken.select(load(simd, &parts[1]), self.rate);
-        self.inv_rate = taken.select(load(simd, &parts[2]), self.inv_rate);
-        self.base = taken.select(load(simd, &parts[3]), self.base);
-        self.local = taken.select(load(simd, &parts[4]), self.local);
-    }
-
-    #[inline(always)]
-    fn forward(&self) -> S::mask64s {
-        self.rate.simd_ge(0.0)
-    }
-
-    #[inline(always)]
-    fn at(&self, tau: S::f64s) -> S::f64s {
-        self.start + self.rate * tau
-    }
-
-    #[inline(always)]
-    fn fraction(&self, tau: S::f64s) -> S::f64s {
-        let inside = self.at(tau) - (self.base + self.local);
-        inside.max(0.0).min(1.0)
-    }
-
-    /// `size` is the side of a square, `inv` one over it.
-    #[inline(always)]
-    fn span(&self, size: S::f64s, inv: S::f64s) -> LaneSpan<S> {
-        let square = (self.local * inv).floor();
-        let first = square * size;
-        LaneSpan {
-            square,
-            first,
-            end: (first + size).min(self.n),
+    fn new(simd: S, relief: &Typed<'a, T>) -> Self {
+        let layout = &relief.layout;
+        Self {
+            numbers: relief.numbers,
+            n: [
+                S::f64s::splat(simd, f64::from(layout.size[0])),
+                S::f64s::splat(simd, f64::from(layout.size[1])),
+            ],
+            factor: S::f64s::splat(simd, relief.factor),
+            offset: S::f64s::splat(simd, relief.offset),
+            top: S::f64s::splat(simd, f64::from(1_u32 << layout.top)),
+            texel_row: S::f64s::splat(simd, layout.texel_row() as f64),
+            node_steps: [
+                S::f64s::splat(simd, layout.node_steps[0] as f64),
+                S::f64s::splat(simd, layout.node_steps[1] as f64),
+            ],
+            end: S::f64s::splat(simd, layout.end as f64),
+            twice: S::f64s::splat(simd, layout.twice as f64),
         }
     }
 
+    /// Side of the squares that walks start with: see [`start_level`](super::walk::start_level).
     #[inline(always)]
-    fn exit(&self, span: LaneSpan<S>) -> S::f64s {
-        let forward = self.base + span.end - self.start;
-        let backward = self.start - (self.base + span.first);
-        self.forward().select(forward, backward) * self.inv_rate
+    fn start_size(&self, rate: [S::f64s; 2], end: S::f64s) -> S::f64s {
+        let simd = end.token();
+        let texels = rate[0].abs().max(rate[1].abs()) * end;
+        // A power of two is all exponent.
+        let exponent = S::u64s::splat(simd, 0x7ff0_0000_0000_0000);
+        let size = (texels.max(1.0).bitcast::<S::u64s>() & exponent).bitcast::<S::f64s>();
+        (size * 0.25).max(1.0).min(self.top)
     }
 
-    /// Where the lanes of `mask` cross into the cell beyond the span; returns those among them whose
-    /// square of the next level is another one.
+    /// See [`Typed::step_cap`].
     #[inline(always)]
-    fn cross(&mut self, span: LaneSpan<S>, inv: S::f64s, mask: S::mask64s) -> S::mask64s {
-        let simd = self.local.token();
-        let zero = S::f64s::splat(simd, 0.0);
-        let half = inv * 0.5;
-        let before = (self.local * half).floor();
-        let forward = self.forward();
-        let wraps = forward.select(
-            (span.end - self.n)
-                .simd_eq(0.0)
-                .select(S::f64s::splat(simd, 1.0), zero),
-            span.first
-                .simd_eq(0.0)
-                .select(S::f64s::splat(simd, 1.0), zero),
-        );
-        let wraps = wraps.simd_gt(0.0);
-        let stays = forward.select(span.end, span.first - 1.0);
-        let wrapped = forward.select(zero, self.n - 1.0);
-        let local = wraps.select(wrapped, stays);
-        let moved = forward.select(self.base + self.n, self.base - self.n);
-        let base = wraps.select(moved, self.base);
-        let other = !(local * half).floor().simd_eq(before);
-        self.local = mask.select(local, self.local);
-        self.base = mask.select(base, self.base);
-        mask & (wraps | other)
+    fn step_cap(&self, rate: [S::f64s; 2], end: S::f64s) -> S::f64s {
+        let [w, h] = self.n;
+        let tiles = (rate[0] * end / w).abs() + 2.0 + (rate[1] * end / h).abs();
+        let cap = (w + h) * 4.0 * tiles + 64.0;
+        cap.min(STEP_CAP).floor()
     }
 
-    /// Takes the cell of the lanes of `mask` from the place, but no other than one of the span.
+    /// Displacements at the corners of cells, or the extremes of coarser squares, as they are stored: see
+    /// [`Layout::level`](crate::texture::Layout::level). All are whole numbers, exactly.
     #[inline(always)]
-    fn settle(&mut self, span: LaneSpan<S>, tau: S::f64s, mask: S::mask64s) {
-        let cell = (self.at(tau) - self.base).floor();
-        let cell = cell.max(span.first).min(span.end - 1.0);
-        self.local = mask.select(cell, self.local);
+    fn fours(&self, simd: S, inv: S::f64s, [column, row]: [S::f64s; 2]) -> [S::f64s; 4] {
+        let (zero, one) = (S::f64s::splat(simd, 0.0), S::f64s::splat(simd, 1.0));
+        let is_cell = inv.simd_eq(one);
+        let first = is_cell.select(zero, self.end - self.twice * inv);
+        let right = is_cell.select(one, self.node_steps[0]);
+        let down = is_cell.select(self.texel_row, self.node_steps[1]);
+        let below = is_cell.select(self.texel_row, zero);
+        let at = (first + column * right) + (row * down + WHOLE);
+        let (upper, lower) = (store::<S>(at), store::<S>(at + below));
+        T::fours(simd, self.numbers, [&upper, &lower])
     }
 }
 
@@ -267,6 +352,20 @@ struct Lanes<S: Simd> {
     inv_size: S::f64s,
     steps: S::f64s,
     cap: S::f64s,
+    busy: S::mask64s,
+    results: Results<S>,
+}
+
+/// What came of walks that are over.
+struct Results<S: Simd> {
+    steps: S::f64s,
+    capped: S::mask64s,
+    found: S::mask64s,
+    /// Where something was found: the parameter at which the cell begins, what is solved for there, and how far
+    /// the cell reaches.
+    tau: S::f64s,
+    parabola: [S::f64s; 3],
+    len: S::f64s,
 }
 
 #[inline(always)]
@@ -286,17 +385,9 @@ impl<S: Simd> Lanes<S> {
     fn idle(simd: S) -> Self {
         let zero = S::f64s::splat(simd, 0.0);
         let one = S::f64s::splat(simd, 1.0);
-        let axis = LaneAxis {
-            n: one,
-            start: zero,
-            rate: zero,
-            inv_rate: one,
-            base: zero,
-            local: zero,
-        };
         Self {
-            x: axis,
-            y: axis,
+            x: LaneAxis::idle(simd),
+            y: LaneAxis::idle(simd),
             line: [zero; 2],
             inv_sinking: one,
             sign: one,
@@ -306,178 +397,123 @@ impl<S: Simd> Lanes<S> {
             inv_size: one,
             steps: zero,
             cap: zero,
+            busy: S::mask64s::from_bitmask(simd, 0),
+            results: Results {
+                steps: zero,
+                capped: S::mask64s::from_bitmask(simd, 0),
+                found: S::mask64s::from_bitmask(simd, 0),
+                tau: zero,
+                parabola: [zero; 3],
+                len: zero,
+            },
         }
     }
 
+    /// Starts the lanes of `taken` as [`Typed::walk`] starts.
     #[inline(always)]
-    fn take(&mut self, simd: S, taken: u64, seeds: &Seeds) {
+    fn take<T: Stored>(
+        &mut self,
+        simd: S,
+        relief: &LaneRelief<'_, S, T>,
+        taken: u64,
+        seeds: &Seeds,
+    ) {
         let taken = S::mask64s::from_bitmask(simd, taken);
-        self.x.take(simd, taken, &seeds.axes[0]);
-        self.y.take(simd, taken, &seeds.axes[1]);
-        for k in 0..2 {
-            self.line[k] = taken.select(load(simd, &seeds.line[k]), self.line[k]);
-        }
-        let zero = S::f64s::splat(simd, 0.0);
-        self.inv_sinking = taken.select(load(simd, &seeds.inv_sinking), self.inv_sinking);
-        self.sign = taken.select(load(simd, &seeds.sign), self.sign);
-        self.end = taken.select(load(simd, &seeds.end), self.end);
+        let (zero, one) = (S::f64s::splat(simd, 0.0), S::f64s::splat(simd, 1.0));
+        let rate = [load(simd, &seeds.rate[0]), load(simd, &seeds.rate[1])];
+        let (x, y) = (load(simd, &seeds.start[0]), load(simd, &seeds.start[1]));
+        self.x.take(relief.n[0], taken, [x, rate[0]]);
+        self.y.take(relief.n[1], taken, [y, rate[1]]);
+        let (sign, end) = (load(simd, &seeds.sign), load(simd, &seeds.end));
+        let z = load(simd, &seeds.line[0]) * sign;
+        let z_rate = load(simd, &seeds.line[1]) * sign;
+        let (size, cap) = (relief.start_size(rate, end), relief.step_cap(rate, end));
+        self.line[0] = taken.select(z, self.line[0]);
+        self.line[1] = taken.select(z_rate, self.line[1]);
+        self.inv_sinking = taken.select(one / -z_rate, self.inv_sinking);
+        self.sign = taken.select(sign, self.sign);
+        self.end = taken.select(end, self.end);
         self.tau = taken.select(zero, self.tau);
-        self.size = taken.select(load(simd, &seeds.size), self.size);
-        self.inv_size = S::f64s::splat(simd, 1.0) / self.size;
+        self.size = taken.select(size, self.size);
+        self.inv_size = taken.select(one / size, self.inv_size);
         self.steps = taken.select(zero, self.steps);
-        self.cap = taken.select(load(simd, &seeds.cap), self.cap);
+        self.cap = taken.select(cap, self.cap);
+        self.busy = self.busy | taken;
     }
 
-    /// One step of every busy walk: see [`Typed::walk`], whose every operation this repeats.
+    /// One step of every walk: see [`Typed::walk`], whose every operation this repeats. Walks that are over go on
+    /// as they like. Returns the lanes with others.
     #[inline(always)]
-    fn step<T: Copy + Into<f64>>(&mut self, simd: S, relief: &Typed<'_, T>, busy: u64) -> Done {
-        let zero = S::f64s::splat(simd, 0.0);
-        self.x.n = S::f64s::splat(simd, f64::from(relief.size[0]));
-        self.y.n = S::f64s::splat(simd, f64::from(relief.size[1]));
+    fn step<T: Stored>(&mut self, simd: S, relief: &LaneRelief<'_, S, T>) -> u64 {
         self.steps += 1.0;
         let capped = self.steps.simd_gt(self.cap);
         let inv = self.inv_size;
-        let (span_x, span_y) = (self.x.span(self.size, inv), self.y.span(self.size, inv));
+        let span_x = self.x.span(relief.n[0], self.size, inv);
+        let span_y = self.y.span(relief.n[1], self.size, inv);
         let (exit_x, exit_y) = (self.x.exit(span_x), self.y.exit(span_y));
         let exit = exit_x.min(exit_y).max(self.tau);
         let leave = exit.min(self.end);
         let [z, z_rate] = self.line;
         let lowest = z + z_rate * z_rate.simd_gt(0.0).select(self.tau, leave);
-        let high = self.high(simd, relief, (span_x, span_y));
+        let [a, b, c, d] = relief.fours(simd, inv, [span_x.square, span_y.square]);
+        let h00 = (a * relief.factor + relief.offset) * self.sign;
+        let h10 = (b * relief.factor + relief.offset) * self.sign;
+        let h01 = (c * relief.factor + relief.offset) * self.sign;
+        let h11 = (d * relief.factor + relief.offset) * self.sign;
+        let high = h00.max(h10).max(h01.max(h11));
 
         let enters = lowest.simd_le(high) & !capped;
         let coarse = self.size.simd_gt(1.0);
         let descends = enters & coarse;
-        let tests = enters & !coarse;
-        let down = (z - high) * self.inv_sinking;
-        let sunk = self.tau.max(down.min(leave));
-        let tau_before = self.tau;
 
         // At the finest level: the patch of the cell.
-        let mut found = tests;
-        let mut at = zero;
-        let tests_bits = tests.to_bitmask() & busy;
-        if tests_bits != 0 {
-            let (meets, after) = self.meet_cell(simd, relief, leave - self.tau, tests_bits);
-            found = tests & meets;
-            at = self.tau + after;
-        } else {
-            found = found & !found;
-        }
+        let len = leave - self.tau;
+        let parabola = self.over_patch([h00, h10, h01, h11]);
+        let found = enters & !coarse & is_not_above::<S>(parabola, len);
+        let tau = self.tau;
 
         // Down one level, or on to the next square.
         let advances = !descends;
-        let tau = descends.select(z_rate.simd_lt(0.0).select(sunk, tau_before), exit);
+        let down = (z - high) * self.inv_sinking;
+        let sunk = self.tau.max(down.min(leave));
+        let sunk = z_rate.simd_lt(0.0).select(sunk, self.tau);
+        self.tau = descends.select(sunk, exit);
         let past_end = advances & exit.simd_ge(self.end);
-        self.tau = tau;
         let crosses_x = exit_x.simd_le(exit_y);
-        self.x.settle(span_x, tau, descends | !crosses_x);
-        self.y.settle(span_y, tau, descends | crosses_x);
-        let leaves_x = self.x.cross(span_x, inv, advances & crosses_x);
-        let leaves_y = self.y.cross(span_y, inv, advances & !crosses_x);
-        let top = S::f64s::splat(simd, f64::from(1_u32 << relief.top()));
-        let climbs = (leaves_x | leaves_y) & self.size.simd_lt(top);
+        self.x.settle(span_x, self.tau, descends | !crosses_x);
+        self.y.settle(span_y, self.tau, descends | crosses_x);
+        let leaves_x = self.x.cross(relief.n[0], span_x, advances & crosses_x);
+        let leaves_y = self.y.cross(relief.n[1], span_y, advances & !crosses_x);
+        let climbs = (leaves_x | leaves_y) & self.size.simd_lt(relief.top);
         let size = climbs.select(self.size * 2.0, self.size);
         self.size = descends.select(self.size * 0.5, size);
         let inv_size = climbs.select(inv * 0.5, inv);
         self.inv_size = descends.select(inv * 2.0, inv_size);
 
-        let ended = capped | found | past_end;
-        Done {
-            ended: ended.to_bitmask(),
-            found: found.to_bitmask(),
-            capped: capped.to_bitmask(),
-            at: store::<S>(at),
-            steps: store::<S>(self.steps),
+        let ended = self.busy & (capped | found | past_end);
+        self.busy = self.busy & !ended;
+        let results = &mut self.results;
+        results.steps = ended.select(self.steps, results.steps);
+        results.capped = ended.select(capped, results.capped);
+        results.found = ended.select(found, results.found);
+        results.tau = ended.select(tau, results.tau);
+        for k in 0..3 {
+            results.parabola[k] = ended.select(parabola[k], results.parabola[k]);
         }
+        results.len = ended.select(len, results.len);
+        self.busy.to_bitmask()
     }
 
-    /// The largest displacement over the squares of the lanes.
+    /// Ray minus patch from τ on: `a σ² + b σ + c`.
     #[inline(always)]
-    fn high<T: Copy + Into<f64>>(
-        &self,
-        simd: S,
-        relief: &Typed<'_, T>,
-        (span_x, span_y): (LaneSpan<S>, LaneSpan<S>),
-    ) -> S::f64s {
-        let (columns, rows) = (store::<S>(span_x.square), store::<S>(span_y.square));
-        let (sizes, signs) = (store::<S>(self.size), store::<S>(self.sign));
-        let mut stored = [0.0; MAX_LANES];
-        // Idle lanes, too: their last square is as good as any, and a branch for each lane costs more.
-        for lane in 0..S::f64s::LEN {
-            // The exponent of a power of two.
-            let level = (sizes[lane].to_bits() >> 52) as u32 - 1023;
-            let node = [columns[lane] as u32, rows[lane] as u32];
-            stored[lane] = relief.farthest(level, node, signs[lane]).into();
-        }
-        self.displaced(simd, relief, &stored)
-    }
-
-    /// Displacements of stored heights, seen from the sides of the walks.
-    #[inline(always)]
-    fn displaced<T>(&self, simd: S, relief: &Typed<'_, T>, stored: &Row) -> S::f64s {
-        (load(simd, stored) * relief.factor + relief.offset) * self.sign
-    }
-
-    /// Which of the lanes `tests` meet the bilinear patch of their cell within `len`, and how far on.
-    #[inline(always)]
-    fn meet_cell<T: Copy + Into<f64>>(
-        &self,
-        simd: S,
-        relief: &Typed<'_, T>,
-        len: S::f64s,
-        tests: u64,
-    ) -> (S::mask64s, S::f64s) {
-        let (columns, rows) = (store::<S>(self.x.local), store::<S>(self.y.local));
-        let mut corners = [[0.0; MAX_LANES]; 4];
-        let [width, height] = relief.size;
-        let mut tests = tests;
-        while tests != 0 {
-            let lane = tests.trailing_zeros() as usize % MAX_LANES;
-            tests &= tests - 1;
-            let (i, j) = (columns[lane] as u32, rows[lane] as u32);
-            let after = |i: u32, n| if i + 1 == n { 0 } else { i + 1 };
-            let (i1, j1) = (after(i, width), after(j, height));
-            let texel = |i: u32, j: u32| relief.texels[j as usize * width as usize + i as usize];
-            corners[0][lane] = texel(i, j).into();
-            corners[1][lane] = texel(i1, j).into();
-            corners[2][lane] = texel(i, j1).into();
-            corners[3][lane] = texel(i1, j1).into();
-        }
-        let h00 = self.displaced(simd, relief, &corners[0]);
-        let h10 = self.displaced(simd, relief, &corners[1]);
-        let h01 = self.displaced(simd, relief, &corners[2]);
-        let h11 = self.displaced(simd, relief, &corners[3]);
+    fn over_patch(&self, [h00, h10, h01, h11]: [S::f64s; 4]) -> [S::f64s; 3] {
         let (fx, fy) = (self.x.fraction(self.tau), self.y.fraction(self.tau));
-        let (dx, dy) = (self.x.rate, self.y.rate);
+        let (dx, dy) = (self.x.rate(), self.y.rate());
         let (hx, hy, twist) = (h10 - h00, h01 - h00, h00 - h10 - h01 + h11);
         let a = -twist * dx * dy;
         let b = self.line[1] - (hx * dx + hy * dy + twist * (fx * dy + fy * dx));
-        let c =
-            (self.line[0] + self.line[1] * self.tau) - (h00 + hx * fx + hy * fy + twist * fx * fy);
-        first_not_above(simd, [a, b, c], len)
+        let z = self.line[0] + self.line[1] * self.tau;
+        let c = z - (h00 + hx * fx + hy * fy + twist * fx * fy);
+        [a, b, c]
     }
-}
-
-/// In which lanes `a σ² + b σ + c` is not above 0 somewhere in `[0, len]`, and the first such σ.
-#[inline(always)]
-fn first_not_above<S: Simd>(
-    simd: S,
-    [a, b, c]: [S::f64s; 3],
-    len: S::f64s,
-) -> (S::mask64s, S::f64s) {
-    let zero = S::f64s::splat(simd, 0.0);
-    let starts = c.simd_le(0.0);
-    let at_end = (a * len + b) * len + c;
-    let square = b * b;
-    let dips =
-        a.simd_gt(0.0) & b.simd_lt(0.0) & (-b).simd_lt(a * 2.0 * len) & square.simd_ge(a * 4.0 * c);
-    let meets = starts | at_end.simd_le(0.0) | dips;
-    let root = (square - a * 4.0 * c).max(0.0).sqrt();
-    let falling = c * 2.0 / (root - b);
-    let rising = -(b + root) / (a * 2.0);
-    let first = b.simd_lt(0.0).select(falling, rising);
-    let finite = first.abs().simd_lt(f64::INFINITY);
-    let first = finite.select(first.max(0.0).min(len), len);
-    (meets, starts.select(zero, first))
 }
