@@ -14,6 +14,7 @@ mod ray;
 mod slabs;
 mod tangents;
 pub mod triangle;
+mod uv_charts;
 
 /// The vector instructions that trees are traced with.
 pub use crate::math::simd;
@@ -28,3 +29,4 @@ pub use ray::{
 };
 pub use slabs::RaySlabs;
 pub use tangents::{Tangent, TangentCell, Tangents};
+pub use uv_charts::{UvBox, UvChartCell, UvCharts};

@@ -7,7 +7,9 @@ use glam::Vec3;
 use super::Snapshot;
 use super::material::{BoundOpacity, FrameMaterial};
 use crate::geometry::bvh::Bvh;
-use crate::geometry::{TangentCell, TriangleAttributes, TriangleMesh};
+use crate::geometry::{
+    Hit, Ray, TangentCell, TriangleAttributes, TriangleMesh, UvBox, UvCharts,
+};
 use crate::math::simd::SimdLevel;
 use crate::math::{LinearRgb, Real, V3};
 use crate::scene::{Background, BentNormals, Scene, ShadingModel, TextureFilter};
@@ -15,7 +17,7 @@ use crate::shading::{Falloff, LightKind};
 use crate::surface::displaced::{DisplacedMesh, Displacement, MicroMesh, Reliefs};
 use crate::surface::mapping::MappingSettings;
 use crate::surface::mapping::relief::ReliefField;
-use crate::surface::uv_at;
+use crate::surface::{SurfaceParts, surface_at, uv_at};
 
 /// Camera rays of a pinhole in internal units (report 2.1–2.3 with rotation; pixel row 0 on top).
 #[derive(Debug, Clone, Copy)]
@@ -73,6 +75,8 @@ pub struct Frame<'a> {
     pub materials: Vec<FrameMaterial<'a>>,
     /// Whether any material has holes.
     pub has_cutouts: bool,
+    /// The charts that reliefs end with, where they do.
+    pub charts: Option<&'a UvCharts>,
     /// The reliefs that are geometry of their own, if there are any.
     pub displaced: Option<FrameDisplacement<'a>>,
     /// Reflection model.
@@ -115,6 +119,9 @@ impl<'a> Frame<'a> {
             lights: frame_lights(snapshot),
             ambient: ambient(snapshot),
             has_cutouts: materials.iter().any(|m| m.opacity.is_some()),
+            charts: (settings.mapping.cut_at_border
+                && materials.iter().any(|m| m.mapping.shifts()))
+            .then(|| scene.uv_charts.get(&scene.mesh)),
             displaced: FrameDisplacement::new(scene, &materials, &settings.mapping),
             materials,
             model: settings.shading.model,
@@ -162,6 +169,40 @@ impl<'a> Frame<'a> {
     pub fn is_solid(&self, prim: u32, u: f32, v: f32) -> bool {
         let holes = self.holes(self.mesh.attributes[prim as usize]);
         holes.is_none_or(|opacity| opacity.is_solid(uv_at(self.mesh, prim, u, v).into()))
+    }
+
+    /// The chart of a triangle that its relief ends with.
+    #[inline]
+    #[must_use]
+    pub fn border(&self, prim: u32) -> Option<&'a UvBox> {
+        self.charts.map(|charts| charts.around(prim))
+    }
+
+    /// Whether a ray in the direction `dir` leaves the relief over a triangle by the border of its chart, so that
+    /// what it hits is not there.
+    #[must_use]
+    pub fn is_cut(&self, dir: Vec3, prim: u32, u: f32, v: f32) -> bool {
+        let Some(border) = self.border(prim) else {
+            return false;
+        };
+        let attributes = self.mesh.attributes[prim as usize];
+        let mapping = &self.materials[usize::from(attributes.material)].mapping;
+        if !attributes.has_uv || !mapping.shifts() {
+            return false;
+        }
+        let ray = Ray {
+            origin: Vec3::ZERO,
+            dir,
+        };
+        let hit = Hit {
+            t: 0.0,
+            prim,
+            sub: 0,
+            u,
+            v,
+        };
+        let s = surface_at(self.mesh, &hit, &ray, SurfaceParts::Gradients);
+        !border.contains(mapping.uv_seen(s))
     }
 
     /// Whether triangles of the tree may not be there.

@@ -253,7 +253,7 @@ struct Nearest {
 /// The nearest solid thing on a ray.
 fn nearest(frame: &Frame<'_>, ray: &Ray, t_max: f32) -> Option<Nearest> {
     let tests = trace::CutoutTests::default();
-    let solid = |prim, u, v| tests.is_solid(frame, prim, u, v);
+    let solid = |prim, u, v| tests.is_there(frame, ray, (prim, u, v));
     let displaced = frame.displaced.as_ref().and_then(|relief| {
         let mesh = relief.mesh(frame.mesh);
         mesh.closest(&mut Tracer::default(), ray, t_max, frame.level)

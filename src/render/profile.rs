@@ -189,6 +189,7 @@ fn with_method(mapping: &MappingSettings, method: Method) -> MappingSettings {
     mapping.use_height = true;
     mapping.derivative = Derivative::Analytic;
     mapping.search.self_shadow = true;
+    mapping.cut_at_border = false;
     mapping
 }
 
@@ -391,7 +392,7 @@ fn lights(
         Some(LightProfile {
             name: snapshot.settings.lights[light.index].name.clone(),
             dir: [wi.dot(cut.away), wi.dot(truth.n_smooth)].map(f64::from),
-            shadowed_by_relief: !behind && is_shadowed(cut.field, true, at, wi).0,
+            shadowed_by_relief: !behind && is_shadowed(cut.field, None, true, at, wi).0,
             behind,
         })
     });

@@ -382,7 +382,13 @@ fn same_visibility(a: &Snapshot, b: &Snapshot) -> bool {
             (amplitude, midlevel, weld_seams, heights.collect::<Vec<_>>())
         })
     };
+    // Where reliefs are cut off, every setting of the mapping counts.
+    let cut = |s: &Snapshot| {
+        let mapping = s.settings.mapping;
+        (mapping.cut_at_border).then(|| (mapping, s.settings.materials.clone()))
+    };
     Arc::ptr_eq(&a.scene, &b.scene)
+        && cut(a) == cut(b)
         && a.size == b.size
         && a.settings.camera == b.settings.camera
         && cutouts(a) == cutouts(b)

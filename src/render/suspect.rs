@@ -25,7 +25,7 @@ impl Suspect {
     #[must_use]
     pub fn leaks(&self, frame: &Frame<'_>, ray: &Ray, truth: Option<f32>) -> bool {
         let tests = CutoutTests::default();
-        let solid = |prim, u, v| tests.is_solid(frame, prim, u, v);
+        let solid = |prim, u, v| tests.is_there(frame, ray, (prim, u, v));
         let found = self.kernel.closest(frame.bvh, ray, &solid).map(|hit| hit.t);
         let bounds = frame.bvh.bounds();
         let tolerance = SAME_PLACE * (bounds.max - bounds.min).length();
@@ -62,7 +62,7 @@ impl Suspect {
             dir: traced.dir,
         };
         let tests = CutoutTests::default();
-        let solid = |prim, u, v| tests.is_solid(frame, prim, u, v);
+        let solid = |prim, u, v| tests.is_there(frame, &ray, (prim, u, v));
         let t_max = shadows.rays.t_max.0[place];
         let stopped = self.kernel.occluded(frame.bvh, &ray, t_max, &solid);
         stopped != shadows.occluded.contains(place)

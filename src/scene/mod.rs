@@ -16,7 +16,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::geometry::bvh::Bvh;
-use crate::geometry::{Normalization, TangentCell, TriangleMesh};
+use crate::geometry::{Normalization, TangentCell, TriangleMesh, UvChartCell};
 use crate::surface::displaced::DisplacementCell;
 use crate::texture::MapImage;
 
@@ -78,6 +78,8 @@ pub struct Scene {
     pub displaced: DisplacementCell,
     /// Tangents as bakers make them, once a material asks for them.
     pub tangents: TangentCell,
+    /// Charts on the texture, once reliefs are cut off at their borders.
+    pub uv_charts: UvChartCell,
 }
 
 /// A scene with the settings it starts from and what was doubtful about it.

@@ -261,6 +261,7 @@ impl Random {
         mapping.use_height = self.flag();
         mapping.use_normal = self.flag();
         mapping.use_parallax = self.flag();
+        mapping.cut_at_border = self.flag();
         mapping.weld_seams = self.flag();
         mapping.displacement_memory = self.below(1 << 20);
         mapping.search = SearchSettings {

@@ -78,6 +78,7 @@ pub(super) fn grid_snapshot(mesh: TriangleMesh, bvh: Bvh, size: [u32; 2]) -> Sna
         images: Vec::new(),
         displaced: crate::surface::displaced::DisplacementCell::default(),
         tangents: crate::geometry::TangentCell::default(),
+        uv_charts: crate::geometry::UvChartCell::default(),
         facts: ModelFacts::default(),
     };
     let mut material = Material::matte("grid", LinearRgb::new(0.6, 0.6, 0.6));

@@ -170,7 +170,7 @@ fn is_lit(
         return true;
     };
     let at = (s.uv, [s.grad_u, s.grad_v], s.n_smooth);
-    !(frame.shadows && is_shadowed(field, true, at, wi).0)
+    !(frame.shadows && is_shadowed(field, None, true, at, wi).0)
 }
 
 /// Moves a point to where its view ray meets the displaced surface.

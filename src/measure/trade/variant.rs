@@ -62,6 +62,8 @@ impl Variant {
         mapping.use_parallax = true;
         mapping.use_height = true;
         mapping.use_normal = true;
+        // The truth has no border to end at.
+        mapping.cut_at_border = false;
         self.choose(&mut mapping);
         mapping
     }

@@ -48,7 +48,7 @@ pub fn reflected_light(
         shadows.occluded = Places::EMPTY;
         if frame.shadows {
             watch.done(Stage::Shade);
-            relief::shadow_by_relief(frame, surfaces, shadows, walks, counters, watch);
+            relief::shadow_by_relief(frame, (hits, surfaces), shadows, walks, counters, watch);
             watch.done(Stage::Perturb);
         }
         if frame.shadows && !shadows.lit.is_empty() {

@@ -3,7 +3,8 @@
 
 use super::super::{Counters, Frame};
 use super::walks::Walks;
-use super::{Column, Places, Shadows, StageWatch, Surfaces, get3};
+use super::{Column, PLACES, Places, Shadows, StageWatch, Surfaces, get3};
+use crate::geometry::HitLanes;
 use crate::math::simd::{Kernel, Simd};
 use crate::math::wide::Wide;
 use crate::math::{Real, V3};
@@ -27,7 +28,7 @@ pub fn way_out<F: Real>((sunk, n_geo): (F, V3<F>), wo: V3<F>, dir: V3<F>, smooth
 /// Takes the light from points that their own relief shadows.
 pub fn shadow_by_relief(
     frame: &Frame<'_>,
-    surfaces: &Surfaces,
+    (hits, surfaces): (&HitLanes<PLACES>, &Surfaces),
     shadows: &mut Shadows,
     walks: &mut Walks,
     counters: &mut Counters,
@@ -54,7 +55,9 @@ pub fn shadow_by_relief(
         let uv = &surfaces.relief.uv;
         for place in (lit & rays.up).iter() {
             let per_z = [rays.per_z[0].0[place], rays.per_z[1].0[place]];
-            if let Some(ray) = rising_ray(field, [uv[0].0[place], uv[1].0[place]], per_z) {
+            let border = frame.border(hits.prim.0[place]);
+            let uv = [uv[0].0[place], uv[1].0[place]];
+            if let Some(ray) = rising_ray(field, border, uv, per_z) {
                 walks.push(place, ray);
             }
         }

@@ -4,8 +4,9 @@ use std::cell::Cell;
 
 use super::super::{Counters, Frame};
 use super::{PLACES, Rays, Shadows, displaced};
-use crate::geometry::HitLanes;
 use crate::geometry::bvh::AcceptAll;
+use crate::geometry::triangle::Watertight;
+use crate::geometry::{CachedHit, HitLanes, NO_HIT, Ray};
 use crate::surface::displaced::Tracer;
 
 /// Closest hits of all rays.
@@ -33,7 +34,8 @@ pub fn plain_closest_hits(
     hits: &mut HitLanes<PLACES>,
     counters: &mut Counters,
 ) {
-    let (bvh, rays, count) = (frame.bvh, &rays.lanes, rays.count);
+    let (bvh, count, active) = (frame.bvh, rays.count, &rays.active);
+    let rays = &rays.lanes;
     if frame.has_holes() {
         let tests = CutoutTests::default();
         let solid = |prim, u, v| tests.is_solid(frame, prim, u, v);
@@ -41,6 +43,23 @@ pub fn plain_closest_hits(
         tests.count(counters);
     } else {
         bvh.intersect_lanes(rays, count, &AcceptAll, hits);
+    }
+    if frame.charts.is_some() {
+        let tests = CutoutTests::default();
+        for place in active.iter().filter(|place| hits.prim.0[*place] != NO_HIT) {
+            let ray = rays.ray(place);
+            let (prim, u, v) = (hits.prim.0[place], hits.u.0[place], hits.v.0[place]);
+            if !tests.is_cut(frame, &ray, (prim, u, v)) {
+                continue;
+            }
+            // Few rays; alone, each knows its direction.
+            let there = |prim, u, v| tests.is_there(frame, &ray, (prim, u, v));
+            match bvh.intersect::<Watertight, _>(&ray, rays.t_max.0[place], &there) {
+                Some(hit) => hits.put(place, (hit.prim, hit.u, hit.v)),
+                None => hits.prim.0[place] = NO_HIT,
+            }
+        }
+        tests.count(counters);
     }
 }
 
@@ -78,6 +97,17 @@ pub fn plain_any_hits(
     } else {
         bvh.occluded_lanes(rays, count, &AcceptAll, occluded);
     }
+    if frame.charts.is_some() {
+        let tests = CutoutTests::default();
+        for place in (shadows.lit & shadows.occluded).iter() {
+            let (ray, t_max) = (shadows.rays.ray(place), shadows.rays.t_max.0[place]);
+            let there = |prim, u, v| tests.is_there(frame, &ray, (prim, u, v));
+            if !bvh.occluded::<Watertight, _>(&ray, t_max, &there) {
+                shadows.occluded.remove(place);
+            }
+        }
+        tests.count(counters);
+    }
 }
 
 /// Counts cut-out decisions from inside the traversal, where counters cannot be borrowed mutably.
@@ -95,6 +125,20 @@ impl CutoutTests {
             self.0.set(self.0.get() + 1);
         }
         frame.is_solid(prim, u, v)
+    }
+
+    /// Whether a ray leaves the relief at this point of a triangle by its border.
+    fn is_cut(&self, frame: &Frame<'_>, ray: &Ray, (prim, u, v): CachedHit) -> bool {
+        if frame.charts.is_none() {
+            return false;
+        }
+        self.0.set(self.0.get() + 1);
+        frame.is_cut(ray.dir, prim, u, v)
+    }
+
+    /// Whether a ray meets a surface at this point of a triangle.
+    pub fn is_there(&self, frame: &Frame<'_>, ray: &Ray, (prim, u, v): CachedHit) -> bool {
+        self.is_solid(frame, prim, u, v) && !self.is_cut(frame, ray, (prim, u, v))
     }
 
     fn count(&self, counters: &mut Counters) {

@@ -40,6 +40,7 @@ pub fn assemble(
     Scene {
         displaced: crate::surface::displaced::DisplacementCell::default(),
         tangents: crate::geometry::TangentCell::default(),
+        uv_charts: crate::geometry::UvChartCell::default(),
         name: name.to_owned(),
         source,
         bvh: Bvh::build(&internal),

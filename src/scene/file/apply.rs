@@ -81,6 +81,7 @@ fn apply_mapping(keys: &MappingKeys, mapping: &mut MappingSettings) {
     put(&mut mapping.use_height, keys.use_height);
     put(&mut mapping.use_normal, keys.use_normal);
     put(&mut mapping.use_parallax, keys.use_parallax);
+    put(&mut mapping.cut_at_border, keys.cut_at_border);
     put(&mut mapping.weld_seams, keys.weld_seams);
     put(&mut mapping.displacement_memory, keys.displacement_memory);
     let search = &mut mapping.search;

@@ -121,6 +121,8 @@ pub(super) struct MappingKeys {
     pub use_normal: Option<bool>,
     /// `use_parallax`.
     pub use_parallax: Option<bool>,
+    /// `cut_at_border`.
+    pub cut_at_border: Option<bool>,
     /// `weld_seams`.
     pub weld_seams: Option<bool>,
     /// `displacement_memory`, mebibytes.

@@ -195,6 +195,7 @@ fn mapping(root: &mut Section<'_>) -> Read<MappingKeys> {
         use_height: table.read("use_height", Item::boolean)?,
         use_normal: table.read("use_normal", Item::boolean)?,
         use_parallax: table.read("use_parallax", Item::boolean)?,
+        cut_at_border: table.read("cut_at_border", Item::boolean)?,
         weld_seams: table.read("weld_seams", Item::boolean)?,
         displacement_memory: table.read("displacement_memory", |x| {
             x.integer(0, MappingSettings::MAX_DISPLACEMENT_MEMORY)

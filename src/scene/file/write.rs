@@ -218,6 +218,7 @@ fn mapping(text: &mut Text, view: &SceneView<'_>) -> Result<(), SaveError> {
     text.raw("use_height", mapping.use_height);
     text.raw("use_normal", mapping.use_normal);
     text.raw("use_parallax", mapping.use_parallax);
+    text.raw("cut_at_border", mapping.cut_at_border);
     text.raw("weld_seams", mapping.weld_seams);
     text.raw("displacement_memory", mapping.displacement_memory);
     let search = &mapping.search;

@@ -60,6 +60,7 @@ pub fn load_model(path: &Path, options: &LoadOptions) -> Result<LoadedScene, Loa
     let scene = Scene {
         displaced: crate::surface::displaced::DisplacementCell::default(),
         tangents: crate::geometry::TangentCell::default(),
+        uv_charts: crate::geometry::UvChartCell::default(),
         name: path.file_name().map_or_else(
             || path.display().to_string(),
             |name| name.to_string_lossy().into_owned(),

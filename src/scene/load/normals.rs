@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::LoadMonitor;
 use super::obj::{NONE, Obj, Smoothing};
 use super::polygon::area_vector;
+use crate::math::Groups;
 use crate::scene::LoadError;
 
 /// Positions or faces that a thread takes at a time.
@@ -176,8 +177,8 @@ impl Listed {
 #[derive(Default)]
 struct Scratch {
     around: Vec<Incident>,
-    /// Union-find over `around`.
-    parents: Vec<u32>,
+    /// Those of `around` that share a normal.
+    pieces: Groups,
     /// (neighbouring position, index into `around`).
     spokes: Vec<(u32, u32)>,
     sums: Vec<DVec3>,
@@ -196,8 +197,7 @@ impl Scratch {
         // The stable order by face makes sums independent of how corners were listed.
         self.around
             .sort_unstable_by_key(|i| (listed.smoothing(*i), i.face, i.corner));
-        self.parents.clear();
-        self.parents.extend(0..self.around.len() as u32);
+        self.pieces.restart(self.around.len());
         self.join_groups(listed);
         self.join_across_gentle_edges(obj, listed);
         self.store_means(obj, listed, v, piece);
@@ -207,7 +207,7 @@ impl Scratch {
         for i in 1..self.around.len() {
             let [before, this] = [i - 1, i].map(|i| listed.smoothing(self.around[i]));
             if before == this && this != Smoothing::Unsaid {
-                self.parents[i] = self.root(i as u32 - 1);
+                self.pieces.join(i as u32 - 1, i as u32);
             }
         }
     }
@@ -229,19 +229,9 @@ impl Scratch {
             }
             let [m, n] = [a, b].map(|i| listed.face_normal(self.around[i as usize]));
             if m.dot(n) > SHARP_COS {
-                let (a, b) = (self.root(a), self.root(b));
-                self.parents[a.max(b) as usize] = a.min(b);
+                self.pieces.join(a, b);
             }
         }
-    }
-
-    fn root(&mut self, mut i: u32) -> u32 {
-        while self.parents[i as usize] != i {
-            let above = self.parents[self.parents[i as usize] as usize];
-            self.parents[i as usize] = above;
-            i = above;
-        }
-        i
     }
 
     fn store_means(&mut self, obj: &Obj, listed: &Listed, v: usize, piece: &mut Piece) {
@@ -253,7 +243,7 @@ impl Scratch {
                 .map(|c| obj.positions[obj.corners[c].v as usize] - obj.positions[v]);
             let angle = before.angle_between(after);
             let normal = listed.face_normal(incident).as_dvec3();
-            let root = self.root(i as u32) as usize;
+            let root = self.pieces.root(i as u32) as usize;
             if angle.is_finite() {
                 self.sums[root] += normal * angle;
             }
@@ -261,7 +251,7 @@ impl Scratch {
         self.made.clear();
         self.made.resize(self.around.len(), NONE);
         for i in 0..self.around.len() {
-            let root = self.root(i as u32) as usize;
+            let root = self.pieces.root(i as u32) as usize;
             let mean = self.sums[root].normalize_or_zero().as_vec3();
             if self.made[root] == NONE && mean != Vec3::ZERO {
                 self.made[root] = piece.normals.len() as u32;

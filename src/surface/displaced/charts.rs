@@ -7,6 +7,7 @@ use super::fine::Cut;
 use super::pieces::{self, Cutting, Piece};
 use super::seams::Seams;
 use crate::geometry::TriangleMesh;
+use crate::math::Groups;
 
 /// How a piece of a displaced triangle is traced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -121,29 +122,17 @@ fn longest_edge(mesh: &TriangleMesh, reliefs: &Reliefs<'_, '_>, prim: u32) -> f6
 /// Numbers of the parts that the triangles belong to: those with a corner in the same place hang together.
 fn parts(mesh: &TriangleMesh, prims: &[u32], places: &[u32]) -> Vec<u32> {
     let count = places.iter().map(|place| place + 1).max().unwrap_or(0);
-    let mut parents: Vec<u32> = (0..count).collect();
+    let mut groups = Groups::new(count as usize);
     for &prim in prims {
         let [a, b, c] = mesh.indices[prim as usize].map(|i| places[i as usize]);
-        for other in [b, c] {
-            let (a, other) = (root(&mut parents, a), root(&mut parents, other));
-            // The lower place stays the root, so that numbers do not depend on the order.
-            parents[a.max(other) as usize] = a.min(other);
-        }
+        groups.join(a, b);
+        groups.join(a, c);
     }
     let mut numbers = std::collections::HashMap::new();
     let mut number = |prim: &u32| {
         let place = places[mesh.indices[*prim as usize][0] as usize];
         let next = numbers.len() as u32;
-        *numbers.entry(root(&mut parents, place)).or_insert(next)
+        *numbers.entry(groups.root(place)).or_insert(next)
     };
     prims.iter().map(&mut number).collect()
-}
-
-fn root(parents: &mut [u32], mut place: u32) -> u32 {
-    while parents[place as usize] != place {
-        // Halving the path keeps it short.
-        parents[place as usize] = parents[parents[place as usize] as usize];
-        place = parents[place as usize];
-    }
-    place
 }

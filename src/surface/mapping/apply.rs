@@ -186,6 +186,17 @@ impl<'a> MaterialMapping<'a> {
         wanted: F::Mask,
         known: Option<Found<F>>,
     ) {
+        self.shift(s, wanted, known);
+        self.tilt.apply(s);
+    }
+
+    #[inline(always)]
+    fn shift<F: Real>(
+        &self,
+        s: &mut SurfaceInteraction<F>,
+        wanted: F::Mask,
+        known: Option<Found<F>>,
+    ) {
         let found = match (&self.shift, known) {
             (Shift::Search(search), None) => Some(search.run(s, wanted)),
             (Shift::Search(_), known) => known,
@@ -202,7 +213,6 @@ impl<'a> MaterialMapping<'a> {
         if let Some(found) = found {
             move_to(s, &found);
         }
-        self.tilt.apply(s);
     }
 
     /// [`Self::apply`] for a single point. Compiled once, not where it is called: it is as long as all methods
@@ -210,6 +220,14 @@ impl<'a> MaterialMapping<'a> {
     #[inline(never)]
     pub fn apply_to_point(&self, s: &mut SurfaceInteraction) {
         self.apply(s, true, None);
+    }
+
+    /// The texture coordinate that is seen at a single point.
+    #[inline(never)]
+    #[must_use]
+    pub fn uv_seen(&self, mut s: SurfaceInteraction) -> V2 {
+        self.shift(&mut s, true, None);
+        s.uv
     }
 
     /// How much the slopes of the relief differ over the footprint of a point that maps were applied to: the

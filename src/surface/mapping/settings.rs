@@ -74,6 +74,9 @@ pub struct MappingSettings {
     pub use_normal: bool,
     /// Whether parallax methods move texture coordinates.
     pub use_parallax: bool,
+    /// Whether there is no surface where a method moves the texture coordinate out of the rectangle around its chart,
+    /// so that the relief ends in a silhouette.
+    pub cut_at_border: bool,
     /// Whether true displacement takes the mean height along edges at which texture coordinates jump, so that
     /// no crack opens there.
     pub weld_seams: bool,
@@ -158,6 +161,7 @@ impl Default for MappingSettings {
             use_height: true,
             use_normal: true,
             use_parallax: true,
+            cut_at_border: false,
             weld_seams: true,
             displacement_memory: 256,
             search: SearchSettings::default(),

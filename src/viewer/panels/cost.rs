@@ -39,6 +39,7 @@ pub(super) fn cost_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
     let bytes = [
         ("Mesh", scene.mesh.bytes()),
         ("Tangents", scene.tangents.bytes()),
+        ("Charts", scene.uv_charts.bytes()),
         ("Tree", scene.bvh.bytes()),
         (
             "Pictures and maps",

@@ -136,6 +136,12 @@ fn search_ui(
             Some(&original.bisections),
         );
     }
+    if method.shifts_uv() {
+        ui.checkbox(&mut mapping.cut_at_border, "Cut off at the chart's border")
+            .on_hover_text(
+                "Where the method looks beyond its chart there is nothing: the relief ends in a silhouette",
+            );
+    }
     if method.searches() {
         ui.checkbox(&mut search.self_shadow, "Relief shadows itself")
             .on_hover_text(

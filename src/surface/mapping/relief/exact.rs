@@ -2,6 +2,7 @@
 
 use super::walk::{ReliefField, ReliefRay, Walk};
 use super::{Found, shell::Shell};
+use crate::geometry::UvBox;
 use crate::math::{Real, V2, V3};
 use crate::surface::SurfaceInteraction;
 
@@ -101,10 +102,11 @@ pub fn landed(
 ///
 /// `uv` is a place on the relief, `wi` the unit direction to the light; `n` the smooth normal and
 /// `gradients` those of u and v. The walk starts on the relief at `uv`, whatever found the place, so that
-/// an inexact search does not shadow itself.
+/// an inexact search does not shadow itself. Beyond `border` there is no relief.
 #[inline(always)]
 pub fn is_shadowed<F: Real>(
     field: &ReliefField<'_>,
+    border: Option<&UvBox>,
     wanted: F::Mask,
     (uv, gradients, n): (V2<F>, [V3<F>; 2], V3<F>),
     wi: V3<F>,
@@ -113,7 +115,7 @@ pub fn is_shadowed<F: Real>(
     let inputs = [uv.x, uv.y, per_z.x, per_z.y];
     let one = uv.x.splat(1.0);
     let [shadowed, steps] = F::each(wanted & is_up, inputs, |[u, v, du, dv]| {
-        walk_up(field, [u, v], [du, dv])
+        walk_up(field, border, [u, v], [du, dv])
     });
     (wanted & (!is_up | shadowed.eq(one)), steps)
 }
@@ -130,23 +132,35 @@ pub fn light_ray<F: Real>(gradients: [V3<F>; 2], n: V3<F>, wi: V3<F>) -> (V2<F>,
 
 /// From a place on the relief to above its top: 1 if something is in the way, else 0; and the steps.
 #[inline(never)]
-fn walk_up(field: &ReliefField<'_>, uv: [f32; 2], per_z: [f32; 2]) -> [f32; 2] {
-    let Some(ray) = rising_ray(field, uv, per_z) else {
+fn walk_up(
+    field: &ReliefField<'_>,
+    border: Option<&UvBox>,
+    uv: [f32; 2],
+    per_z: [f32; 2],
+) -> [f32; 2] {
+    let Some(ray) = rising_ray(field, border, uv, per_z) else {
         return [0.0; 2];
     };
     let walk = field.walk(&ray);
     [f32::from(u8::from(walk.at.is_some())), walk.steps as f32]
 }
 
-/// The ray from the relief at `uv` to its top; `None` if it starts there.
+/// The ray from the relief at `uv` to its top or to the border; `None` if it starts there.
 #[inline]
 #[must_use]
-pub fn rising_ray(field: &ReliefField<'_>, uv: [f32; 2], per_z: [f32; 2]) -> Option<ReliefRay> {
+pub fn rising_ray(
+    field: &ReliefField<'_>,
+    border: Option<&UvBox>,
+    uv: [f32; 2],
+    per_z: [f32; 2],
+) -> Option<ReliefRay> {
     let [low, high] = field.range();
     let start = field.texels_from_uv(uv.map(f64::from));
     let rates = field.texels_per_uv();
+    let stays = border.map_or(f64::INFINITY, |border| border.exit(uv, per_z));
     let per_z = [0, 1].map(|k| f64::from(per_z[k]) * rates[k]);
     let z_start = field.displacement(start) + LIFT * (high - low);
-    (start.iter().all(|place| place.is_finite()) && z_start < high)
-        .then(|| ReliefRay::by_height(start, per_z, z_start, high))
+    let z_end = high.min(z_start + stays);
+    (start.iter().all(|place| place.is_finite()) && z_start < z_end)
+        .then(|| ReliefRay::by_height(start, per_z, z_start, z_end))
 }
