@@ -83,6 +83,8 @@ pub struct Frame<'a> {
     pub model: ShadingModel,
     /// Normals bent by maps.
     pub bent_normals: BentNormals,
+    /// Whether meshes with smooth normals count as the smooth surfaces that they stand for, where light ends.
+    pub smooth_terminator: bool,
     /// Growth of a ray's cone per distance, where maps are read as means over it.
     pub cone_spread: Option<f32>,
     /// Whether shadow rays are traced.
@@ -126,6 +128,7 @@ impl<'a> Frame<'a> {
             materials,
             model: settings.shading.model,
             bent_normals: settings.shading.bent_normals,
+            smooth_terminator: settings.shading.smooth_terminator,
             cone_spread: (settings.shading.filter == TextureFilter::Mip)
                 .then(|| pixel_spread(snapshot)),
             shadows: settings.shading.shadows,

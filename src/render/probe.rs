@@ -11,13 +11,15 @@ use super::stages::{
 };
 use super::{Counters, Frame, Snapshot};
 use crate::geometry::triangle::Watertight;
-use crate::geometry::{Hit, Ray};
+use crate::geometry::{Hit, Ray, offset_by_bound};
 use crate::math::{LinearRgb, V3, angle, gamma, srgb8_from_linear};
 use crate::scene::BentNormals;
 use crate::shading::softened_horizon;
 use crate::surface::displaced::{SurfaceHit, Tracer};
 use crate::surface::mapping::relief::is_shadowed;
-use crate::surface::{SurfaceInteraction, SurfaceParts, surface_at};
+use crate::surface::{
+    Facet, FacetKind, SmoothedPoint, SurfaceInteraction, SurfaceParts, surface_at,
+};
 
 /// Every step from a pixel's first ray to its colour. Lengths are world units, directions unit vectors,
 /// colours linear.
@@ -83,6 +85,9 @@ pub struct HitStory {
     pub tilt_deg: f32,
     /// Diffuse colour at the moved coordinate.
     pub diffuse: LinearRgb,
+    /// How far along the geometric normal shadow rays start above the facet, because light takes the coarse mesh as
+    /// smooth; `None` where it does not.
+    pub lifted: Option<f64>,
     /// Light from everywhere, reflected.
     pub ambient: LinearRgb,
     /// Every point and directional light that is on.
@@ -305,16 +310,25 @@ fn hit_story(
         mapped.n_shade = plain.n_geo;
     }
     material.place_baked_frame((frame.mesh, frame.tangents), hit, &mut mapped);
+    let front = plain.wo.dot(plain.n_geo) >= 0.0;
+    let smoothed = smoothed(frame, found, &plain, front);
     let diffuse = surface::perturb(material, parts, &mut mapped);
     let slope_variance = surface::slope_variance(material, parts, &mapped);
     let has_uv = parts > SurfaceParts::Plain;
-    let front = plain.wo.dot(plain.n_geo) >= 0.0;
     let towards_eye = |n: V3| Vec3::from(if front { n } else { -n });
     (mapped.n_geo, mapped.n_shade) = (
         towards_eye(mapped.n_geo).into(),
         towards_eye(mapped.n_shade).into(),
     );
     let n_smooth = towards_eye(plain.n_shade);
+    let point = LitPoint {
+        s: &mapped,
+        smooth: attributes.smooth,
+        smoothed,
+        material: index,
+        diffuse,
+        slope_variance,
+    };
     let tilt = angle(n_smooth.as_dvec3(), Vec3::from(mapped.n_shade).as_dvec3());
     let per_world = |g: V3| (Vec3::from(g).as_dvec3() * normalization.scale).to_array();
     HitStory {
@@ -333,21 +347,74 @@ fn hit_story(
         n_shade: mapped.n_shade.into(),
         tilt_deg: tilt.to_degrees() as f32,
         diffuse,
+        lifted: smoothed.map(|p| normalization.world_length(p.lift.dot(mapped.n_geo))),
         ambient: diffuse * frame.ambient,
         lights: frame
             .lights
             .iter()
-            .filter_map(|l| {
-                light_story(
-                    snapshot,
-                    frame,
-                    l,
-                    (&mapped, diffuse, index, attributes.smooth),
-                    slope_variance,
-                )
-            })
+            .filter_map(|light| light_story(snapshot, frame, light, &point))
             .collect(),
         reflectivity: material.reflectivity,
+    }
+}
+
+/// The hit as a point of the smooth surface that its mesh stands for, where light takes it so.
+fn smoothed(
+    frame: &Frame<'_>,
+    found: &Nearest,
+    s: &SurfaceInteraction,
+    front: bool,
+) -> Option<SmoothedPoint> {
+    let hit = &found.hit;
+    let smooth = frame.mesh.attributes[hit.prim as usize].smooth;
+    if !(frame.smooth_terminator && smooth && found.displaced.is_none()) {
+        return None;
+    }
+    let parts = SurfaceParts::Plain;
+    let facet = Facet::fetch(frame.mesh, hit.prim, FacetKind { smooth, parts });
+    let towards_eye = |n: V3| if front { n } else { -n };
+    let normals = (towards_eye(s.n_smooth), towards_eye(s.n_geo), !front);
+    Some(SmoothedPoint::new(&facet, (hit.u, hit.v), s.p, normals))
+}
+
+/// A point as lights see it.
+struct LitPoint<'a> {
+    /// Its normals point to the eye.
+    s: &'a SurfaceInteraction,
+    /// Whether normals are interpolated.
+    smooth: bool,
+    smoothed: Option<SmoothedPoint>,
+    material: usize,
+    diffuse: LinearRgb,
+    slope_variance: Option<f32>,
+}
+
+impl LitPoint<'_> {
+    /// Where a ray in the unit direction `wi` starts before it is offset, and the bound on its rounding.
+    fn start(&self, wi: V3) -> (V3, f32) {
+        let s = self.s;
+        let way_out = stages::relief::way_out((s.sunk, s.n_geo), s.wo, wi, self.smooth);
+        let rounding = way_out.abs().dot(s.n_geo.abs()) * gamma(8);
+        let (base, bound) = (s.p + way_out, s.n_geo.abs().dot(s.p_error) + rounding);
+        match self.smoothed {
+            Some(point) => (base + point.lift, bound + point.rounding(base, s.n_geo)),
+            None => (base, bound),
+        }
+    }
+
+    /// Normal of the surface whose horizon ends light.
+    fn horizon(&self) -> V3 {
+        self.smoothed.map_or(self.s.n_geo, |point| point.normal)
+    }
+
+    /// Whether light from the unit direction `wi` comes from outside.
+    fn faces(&self, wi: V3) -> bool {
+        let s = self.s;
+        let outside = match self.smoothed {
+            Some(point) => point.faces(wi, s.n_geo, self.start(wi).1),
+            None => s.n_geo.dot(wi) > 0.0,
+        };
+        outside && s.n_shade.dot(wi) > 0.0
     }
 }
 
@@ -355,10 +422,10 @@ fn light_story(
     snapshot: &Snapshot,
     frame: &Frame<'_>,
     light: &super::frame::FrameLight,
-    (s, diffuse, material, smooth): (&SurfaceInteraction, LinearRgb, usize, bool),
-    slope_variance: Option<f32>,
+    point: &LitPoint<'_>,
 ) -> Option<LightStory> {
     let normalization = &snapshot.scene.normalization;
+    let (s, diffuse, material) = (point.s, point.diffuse, point.material);
     let arriving = light::arriving(light, s.p);
     if !arriving.arrives {
         return None;
@@ -366,16 +433,16 @@ fn light_story(
     let (wi, distance) = (arriving.wi, arriving.distance);
     let mut irradiance = light.irradiance * arriving.falloff;
     if frame.bent_normals == BentNormals::Softened {
-        irradiance *= softened_horizon(s.n_geo, s.n_shade, wi);
+        irradiance *= softened_horizon(point.horizon(), s.n_shade, wi);
     }
     let (cos_geo, cos_shade) = (s.n_geo.dot(wi), s.n_shade.dot(wi));
-    let visibility = if !(cos_geo > 0.0 && cos_shade > 0.0) {
+    let visibility = if !point.faces(wi) {
         Visibility::Behind
     } else if frame.shadows && is_shadowed_by_relief(frame, s, wi, material) {
         Visibility::ShadowedByRelief
     } else if let Some(found) = frame
         .shadows
-        .then(|| occluder(frame, s, (wi, distance), smooth))
+        .then(|| occluder(frame, point, (wi, distance)))
         .flatten()
     {
         Visibility::Shadowed {
@@ -393,7 +460,7 @@ fn light_story(
         s.wo,
         diffuse,
         wi,
-        slope_variance,
+        point.slope_variance,
     );
     let seen = if visibility == Visibility::Visible {
         irradiance
@@ -432,14 +499,14 @@ fn is_shadowed_by_relief(
 /// The nearest thing between a point and a light.
 fn occluder(
     frame: &Frame<'_>,
-    s: &SurfaceInteraction,
+    point: &LitPoint<'_>,
     (wi, distance): (V3, f32),
-    smooth: bool,
 ) -> Option<Nearest> {
-    let way_out = stages::relief::way_out((s.sunk, s.n_geo), s.wo, wi, smooth);
-    let rounding = way_out.abs().dot(s.n_geo.abs()) * gamma(8);
-    let bound = s.n_geo.abs().dot(s.p_error) + rounding;
-    let ray = Ray::leaving(((s.p + way_out).into(), bound, s.n_geo.into()), wi.into());
+    let (start, bound) = point.start(wi);
+    let ray = Ray {
+        origin: offset_by_bound(start, bound, point.s.n_geo, point.s.n_geo).into(),
+        dir: wi.into(),
+    };
     nearest(frame, &ray, distance * light::LIGHT_END)
 }
 
@@ -511,6 +578,9 @@ impl fmt::Display for HitStory {
             self.tilt_deg
         )?;
         writeln!(f, "  diffuse       {}", C(self.diffuse))?;
+        if let Some(lifted) = self.lifted {
+            writeln!(f, "  shadow rays   start {lifted:.3e} over the facet")?;
+        }
         writeln!(f, "  ambient       {}", C(self.ambient))?;
         for light in &self.lights {
             write!(f, "{light}")?;

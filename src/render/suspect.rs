@@ -51,10 +51,13 @@ impl Suspect {
             OffsetRule::Bound => traced.origin,
             OffsetRule::Fixed => {
                 let n_geo = vec_at(&surfaces.n_geo, place);
+                let smoothed = surfaces.smoothed.as_deref().filter(|_| run.smoothed);
+                let lift = smoothed.map_or(Vec3::ZERO, |points| vec_at(&points.lift, place));
                 let base = vec_at(&surfaces.p, place)
-                    + out_of_relief((rays, surfaces), (run, place), traced.dir);
+                    + out_of_relief((rays, surfaces), (run, place), traced.dir)
+                    + lift;
                 let rule = self.offset_rule.origin_rule();
-                offset_origin(base, Vec3::ZERO, n_geo, traced.dir, rule)
+                offset_origin(base, Vec3::ZERO, n_geo, n_geo, rule)
             }
         };
         let ray = Ray {

@@ -130,6 +130,9 @@ pub struct ShadingSettings {
     pub specular_antialiasing: bool,
     /// Whether shadow rays are traced.
     pub shadows: bool,
+    /// Whether light ends where interpolated normals say, not at the edges of facets. Meshes without such normals look
+    /// the same and cost the same.
+    pub smooth_terminator: bool,
     /// Mirror bounces at the most; 0 shows no reflections.
     pub max_bounces: u32,
     /// Behind everything.
@@ -144,6 +147,7 @@ impl Default for ShadingSettings {
             filter: TextureFilter::Bilinear,
             specular_antialiasing: false,
             shadows: true,
+            smooth_terminator: false,
             max_bounces: 3,
             background: Background::plain(LinearRgb::BLACK),
         }

@@ -6,8 +6,10 @@ mod facet;
 mod hit_point;
 mod interaction;
 pub mod mapping;
+mod terminator;
 
 pub use baked_frame::BakedFrame;
 pub use facet::{Facet, FacetKind};
 pub use hit_point::{SurfaceParts, footprint, surface_at, surface_on, uv_at};
 pub use interaction::SurfaceInteraction;
+pub use terminator::SmoothedPoint;

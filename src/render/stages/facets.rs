@@ -5,8 +5,8 @@ use super::{PLACES, Rays, Run, get3};
 use crate::geometry::HitLanes;
 use crate::math::simd::{Simd, SimdBase as _};
 use crate::math::wide::{Wide, WideBits, WideMask};
-use crate::math::{Bits as _, Mask as _};
-use crate::surface::{Facet, FacetKind, SurfaceInteraction, surface_on};
+use crate::math::{Bits as _, Mask as _, Real as _, V3};
+use crate::surface::{Facet, FacetKind, SmoothedPoint, SurfaceInteraction, surface_on};
 
 /// The triangles under a run's points. On large triangles all lanes share one; it is prepared once and
 /// kept for the groups that follow.
@@ -41,6 +41,25 @@ impl<'a> Facets<'a> {
         let barycentrics = (hits.u.get(simd, group), hits.v.get(simd, group));
         let wo = -get3(simd, &rays.lanes.dir, group);
         surface_on(&facet, barycentrics, wo, self.kind)
+    }
+
+    /// The points of a group, as [`Self::surface`] made them, as points of the smooth surface that their mesh stands
+    /// for.
+    #[inline(always)]
+    pub(super) fn smoothed<S: Simd>(
+        &mut self,
+        simd: S,
+        (run, group): (&Run, usize),
+        hits: &HitLanes<PLACES>,
+        s: &SurfaceInteraction<Wide<S>>,
+    ) -> SmoothedPoint<Wide<S>> {
+        let lane = run.places.bits::<S>(group).trailing_zeros() as usize;
+        let mask = run.places.mask(simd, group);
+        let facet = self.facet(hits.prim.get(simd, group), (mask, lane));
+        let barycentrics = (hits.u.get(simd, group), hits.v.get(simd, group));
+        let from_behind = s.wo.dot(s.n_geo).lt(Wide::new(simd, 0.0));
+        let [normal, n_geo] = [s.n_smooth, s.n_geo].map(|n| V3::select(from_behind, -n, n));
+        SmoothedPoint::new(&facet, barycentrics, s.p, (normal, n_geo, from_behind))
     }
 
     /// The triangle of each lane. `lane` is one in the mask.

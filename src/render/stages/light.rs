@@ -12,7 +12,8 @@ use super::{
     Column, Mirrors, PLACES, Places, Rays, Shadows, Stage, StageWatch, Surfaces, get_rgb, get3,
     groups, set, set_rgb, set3,
 };
-use crate::geometry::{HitLanes, offset_by_bound};
+use crate::geometry::{HitLanes, NO_HIT, offset_by_bound};
+use crate::math::lanes::Lanes;
 use crate::math::simd::{Kernel, Simd};
 use crate::math::wide::Wide;
 use crate::math::{LinearRgb, Real, V3, gamma};
@@ -37,7 +38,12 @@ pub fn reflected_light(
     counters: &mut Counters,
     watch: &mut impl StageWatch,
 ) {
-    shadows.rays.leaving = hits.prim;
+    // A facet that counts as smooth may stand in the way of its own points.
+    shadows.rays.leaving = if surfaces.runs.iter().any(|run| run.smoothed) {
+        Lanes::splat(NO_HIT)
+    } else {
+        hits.prim
+    };
     frame.level.run_or_plain(Ambient {
         frame,
         count: rays.count,
@@ -111,7 +117,8 @@ impl Kernel for Ambient<'_> {
 }
 
 /// Sets shadow rays from the points that can see the light if nothing is between: it must be outside for the
-/// geometric and for the shading normal, or reliefs leak light. The others cost no shadow ray.
+/// geometric and for the shading normal, or reliefs leak light. The others cost no shadow ray. On facets that count as
+/// smooth the interpolated normal stands for the geometric one.
 struct AimAtLight<'a> {
     frame: &'a Frame<'a>,
     light: &'a FrameLight,
@@ -143,8 +150,7 @@ impl Kernel for AimAtLight<'_> {
                 let n_geo = get3(simd, &from.n_geo, group);
                 let n_shade = get3(simd, &from.n_shade, group);
                 let light = arriving(self.light, p);
-                lit = lit & light.arrives;
-                lit = lit & n_geo.dot(light.wi).gt(zero) & n_shade.dot(light.wi).gt(zero);
+                lit = lit & light.arrives & n_shade.dot(light.wi).gt(zero);
                 let mut bound = from.bound.get(simd, group);
                 let mut base = p;
                 if run.searches {
@@ -154,7 +160,15 @@ impl Kernel for AimAtLight<'_> {
                     base = p + way_out;
                     bound = bound + way_out.abs().dot(n_geo.abs()) * zero.splat(gamma(8));
                 }
-                let origin = offset_by_bound(base, bound, n_geo, light.wi);
+                if let Some(points) = from.smoothed.as_deref().filter(|_| run.smoothed) {
+                    let point = points.get(simd, group);
+                    bound = bound + point.rounding(base, n_geo);
+                    base = base + point.lift;
+                    lit = lit & point.faces(light.wi, n_geo, bound);
+                } else {
+                    lit = lit & n_geo.dot(light.wi).gt(zero);
+                }
+                let origin = offset_by_bound(base, bound, n_geo, n_geo);
                 set3(&mut to.rays.origin, group, lit, origin);
                 set3(&mut to.rays.dir, group, lit, light.wi);
                 set(&mut to.rays.t_max, group, lit, light.distance * LIGHT_END);
@@ -225,7 +239,7 @@ impl Kernel for AddLight<'_> {
         let mut powers = Places::EMPTY;
         for run in &surfaces.runs {
             let material = &self.frame.materials[run.material];
-            let seen = run.places & seen;
+            let (seen, smoothed) = (run.places & seen, run.smoothed);
             for group in seen.groups::<S>() {
                 let mask = seen.mask(simd, group);
                 let response = response(
@@ -242,10 +256,14 @@ impl Kernel for AddLight<'_> {
                 powers.add(group, response.took_power & mask);
                 let mut falloff = self.shadows.falloff.get(simd, group);
                 if self.frame.bent_normals == BentNormals::Softened {
-                    let n_geo = get3(simd, &surfaces.n_geo, group);
+                    let smoothed = surfaces.smoothed.as_deref().filter(|_| smoothed);
+                    let horizon = match smoothed {
+                        Some(points) => points.get(simd, group).normal,
+                        None => get3(simd, &surfaces.n_geo, group),
+                    };
                     let n_shade = get3(simd, &surfaces.n_shade, group);
                     let wi = get3(simd, &self.shadows.rays.dir, group);
-                    falloff = falloff * softened_horizon(n_geo, n_shade, wi);
+                    falloff = falloff * softened_horizon(horizon, n_shade, wi);
                 }
                 let arriving = at_most(irradiance * falloff);
                 let sum =

@@ -29,8 +29,8 @@ use crate::math::lanes::{Lanes, PlaceSet};
 use crate::math::simd::{Simd, SimdBase as _};
 use crate::math::wide::{Wide, WideMask};
 use crate::math::{LinearRgb, Real as _, V3};
-use crate::surface::FacetKind;
 use crate::surface::displaced::Tracer;
+use crate::surface::{FacetKind, SmoothedPoint};
 
 /// Places in a tile's arrays: a pixel each.
 pub const PLACES: usize = 1024;
@@ -90,6 +90,9 @@ pub struct Run {
     pub displaced: bool,
     /// Whether their places on a relief are searched for, so that [`ReliefPoints`] tell of them.
     pub searches: bool,
+    /// Whether light takes them as points of the smooth surface that their mesh stands for, so that
+    /// [`SmoothedPoints`] tell of them.
+    pub smoothed: bool,
     /// Where they are.
     pub places: Places,
 }
@@ -119,6 +122,36 @@ pub struct ReliefPoints {
     pub grad_v: Column3,
 }
 
+/// What lights want to know of points on coarse meshes that count as smooth: see
+/// [`SmoothedPoint`](crate::surface::SmoothedPoint). What places of other runs hold means nothing.
+#[derive(Debug)]
+pub struct SmoothedPoints {
+    /// Interpolated normals before the maps, towards the eye.
+    pub normal: Column3,
+    /// From each point to where its shadow rays start.
+    pub lift: Column3,
+}
+
+impl Default for SmoothedPoints {
+    fn default() -> Self {
+        Self {
+            normal: [Column::splat(0.0); 3],
+            lift: [Column::splat(0.0); 3],
+        }
+    }
+}
+
+impl SmoothedPoints {
+    /// The points of a group.
+    #[inline(always)]
+    fn get<S: Simd>(&self, simd: S, group: usize) -> SmoothedPoint<Wide<S>> {
+        SmoothedPoint {
+            normal: get3(simd, &self.normal, group),
+            lift: get3(simd, &self.lift, group),
+        }
+    }
+}
+
 /// Surface points of one bounce.
 #[derive(Debug)]
 pub struct Surfaces {
@@ -140,6 +173,8 @@ pub struct Surfaces {
     pub reflected: Column3,
     /// Points on reliefs.
     pub relief: ReliefPoints,
+    /// Points on coarse meshes that count as smooth; `None` until there are any.
+    pub smoothed: Option<Box<SmoothedPoints>>,
 }
 
 /// Shadow rays of one light.
@@ -217,6 +252,7 @@ impl Default for Scratch {
                         grad_u: ZEROS,
                         grad_v: ZEROS,
                     },
+                    smoothed: None,
                 },
                 shadows: Shadows {
                     rays: RayLanes::none(),

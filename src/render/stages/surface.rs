@@ -33,6 +33,9 @@ pub fn mapped_surfaces(
     for run in 0..surfaces.runs.len() {
         let run = surfaces.runs[run];
         count(&frame.materials[run.material], &run, counters);
+        if run.smoothed && surfaces.smoothed.is_none() {
+            surfaces.smoothed = Some(Box::default());
+        }
         if let Some(field) = frame.materials[run.material].mapping.walks()
             && run.kind.parts == SurfaceParts::Gradients
         {
@@ -119,6 +122,9 @@ fn run_of(frame: &Frame<'_>, prim: u32, runs: &mut Vec<Run>, likely: usize) -> u
                 parts,
             },
             searches: parts == SurfaceParts::Gradients && material.mapping.searches(),
+            smoothed: frame.smooth_terminator
+                && attributes.smooth
+                && !frame.displaces(attributes),
             displaced: frame.displaces(attributes),
             places: Places::EMPTY,
         });
@@ -224,6 +230,13 @@ impl Kernel for MapRun<'_> {
         for group in self.run.places.groups::<S>() {
             let mask = self.run.places.mask(simd, group);
             let mut s = facets.surface(simd, (&self.run, group), self.rays, self.hits);
+            if let Some(to) = &mut self.surfaces.smoothed
+                && self.run.smoothed
+            {
+                let point = facets.smoothed(simd, (&self.run, group), self.hits, &s);
+                set3(&mut to.normal, group, mask, point.normal);
+                set3(&mut to.lift, group, mask, point.lift);
+            }
             if let Some(spread) = self.frame.cone_spread
                 && self.run.kind.parts == SurfaceParts::Gradients
             {

@@ -67,6 +67,7 @@ fn apply_shading(keys: &ShadingKeys, shading: &mut ShadingSettings) {
         &mut shading.specular_antialiasing,
         keys.specular_antialiasing,
     );
+    put(&mut shading.smooth_terminator, keys.smooth_terminator);
     put(&mut shading.shadows, keys.shadows);
     put(&mut shading.max_bounces, keys.max_bounces);
     put(&mut shading.background, keys.background);

@@ -94,6 +94,8 @@ pub(super) struct ShadingKeys {
     pub filter: Option<TextureFilter>,
     /// `specular_antialiasing`.
     pub specular_antialiasing: Option<bool>,
+    /// `smooth_terminator`.
+    pub smooth_terminator: Option<bool>,
     /// `shadows`.
     pub shadows: Option<bool>,
     /// `max_bounces`.

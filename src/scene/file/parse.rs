@@ -158,6 +158,7 @@ fn shading(root: &mut Section<'_>) -> Read<ShadingKeys> {
             x.choice(&TextureFilter::ALL, TextureFilter::name)
         })?,
         specular_antialiasing: table.read("specular_antialiasing", Item::boolean)?,
+        smooth_terminator: table.read("smooth_terminator", Item::boolean)?,
         shadows: table.read("shadows", Item::boolean)?,
         max_bounces: table.read("max_bounces", |x| x.integer(0, MAX_BOUNCES))?,
         background: table.read("background", background)?,

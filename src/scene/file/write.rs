@@ -190,6 +190,7 @@ fn shading(text: &mut Text, view: &SceneView<'_>) -> Result<(), SaveError> {
     text.string("bent_normals", shading.bent_normals.name());
     text.string("filter", shading.filter.name());
     text.raw("specular_antialiasing", shading.specular_antialiasing);
+    text.raw("smooth_terminator", shading.smooth_terminator);
     text.raw("shadows", shading.shadows);
     text.raw("max_bounces", shading.max_bounces);
     let Background { top, bottom } = shading.background;

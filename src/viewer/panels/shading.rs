@@ -40,6 +40,10 @@ pub(super) fn shading_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
             );
     });
     ui.checkbox(&mut shading.shadows, "Shadows");
+    ui.checkbox(&mut shading.smooth_terminator, "Smooth terminator")
+        .on_hover_text(
+            "On coarse meshes light ends where smooth normals say, not in steps along the facets",
+        );
     number_ui(
         ui,
         Caption::new("Mirror bounces"),
