@@ -7,9 +7,7 @@ use glam::Vec3;
 use super::Snapshot;
 use super::material::{BoundOpacity, FrameMaterial};
 use crate::geometry::bvh::Bvh;
-use crate::geometry::{
-    Hit, Ray, TangentCell, TriangleAttributes, TriangleMesh, UvBox, UvCharts,
-};
+use crate::geometry::{Hit, Ray, TangentCell, TriangleAttributes, TriangleMesh, UvBox, UvCharts};
 use crate::math::simd::SimdLevel;
 use crate::math::{LinearRgb, Real, V3};
 use crate::scene::{Background, BentNormals, Scene, ShadingModel, TextureFilter};

@@ -11,7 +11,7 @@ use super::stages::{
 };
 use super::{Counters, Frame, Snapshot};
 use crate::geometry::triangle::Watertight;
-use crate::geometry::{Hit, Ray, offset_by_bound};
+use crate::geometry::{Hit, Ray, UvBox, offset_by_bound};
 use crate::math::{LinearRgb, V3, angle, gamma, srgb8_from_linear};
 use crate::scene::BentNormals;
 use crate::shading::softened_horizon;
@@ -326,6 +326,7 @@ fn hit_story(
         smooth: attributes.smooth,
         smoothed,
         material: index,
+        border: frame.border(hit.prim),
         diffuse,
         slope_variance,
     };
@@ -385,6 +386,8 @@ struct LitPoint<'a> {
     smooth: bool,
     smoothed: Option<SmoothedPoint>,
     material: usize,
+    /// Of the relief that it is on.
+    border: Option<&'a UvBox>,
     diffuse: LinearRgb,
     slope_variance: Option<f32>,
 }
@@ -438,7 +441,7 @@ fn light_story(
     let (cos_geo, cos_shade) = (s.n_geo.dot(wi), s.n_shade.dot(wi));
     let visibility = if !point.faces(wi) {
         Visibility::Behind
-    } else if frame.shadows && is_shadowed_by_relief(frame, s, wi, material) {
+    } else if frame.shadows && is_shadowed_by_relief(frame, s, wi, (material, point.border)) {
         Visibility::ShadowedByRelief
     } else if let Some(found) = frame
         .shadows
@@ -487,21 +490,17 @@ fn is_shadowed_by_relief(
     frame: &Frame<'_>,
     s: &SurfaceInteraction,
     wi: V3,
-    material: usize,
+    (material, border): (usize, Option<&UvBox>),
 ) -> bool {
     let field = frame.materials[material].mapping.self_shadow();
     field.filter(|_| s.steps > 0.0).is_some_and(|field| {
         let gradients = [s.grad_u, s.grad_v];
-        is_shadowed(field, true, (s.uv, gradients, s.n_smooth), wi).0
+        is_shadowed(field, border, true, (s.uv, gradients, s.n_smooth), wi).0
     })
 }
 
 /// The nearest thing between a point and a light.
-fn occluder(
-    frame: &Frame<'_>,
-    point: &LitPoint<'_>,
-    (wi, distance): (V3, f32),
-) -> Option<Nearest> {
+fn occluder(frame: &Frame<'_>, point: &LitPoint<'_>, (wi, distance): (V3, f32)) -> Option<Nearest> {
     let (start, bound) = point.start(wi);
     let ray = Ray {
         origin: offset_by_bound(start, bound, point.s.n_geo, point.s.n_geo).into(),

@@ -60,7 +60,14 @@ fn walk(
             let shadows = &mut work.shadows;
             light::aim_at_light(frame, light, mirrors, (&work.rays, &work.surfaces), shadows);
             let walks = &mut work.walks;
-            relief::shadow_by_relief(frame, &work.surfaces, shadows, walks, counters, &mut ());
+            relief::shadow_by_relief(
+                frame,
+                (hits, &work.surfaces),
+                shadows,
+                walks,
+                counters,
+                &mut (),
+            );
             add(&shadows.rays, shadows.lit);
         }
         work.rays.active = bounce::turn_to_mirror_rays(frame, &mut work.rays, hits, &work.surfaces);

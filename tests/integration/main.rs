@@ -5,6 +5,7 @@
 mod answers;
 mod bench;
 mod bent_normals;
+mod borders;
 mod built_in;
 mod bundles;
 mod bvh;

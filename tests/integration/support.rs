@@ -113,6 +113,7 @@ impl QuadScene {
         let scene = Scene {
             displaced: Default::default(),
             tangents: Default::default(),
+            uv_charts: Default::default(),
             name: "quad".into(),
             source: SceneSource::BuiltIn("quad".into()),
             bvh: Bvh::build(&mesh),

@@ -46,10 +46,10 @@ pub fn plain_closest_hits(
     }
     if frame.charts.is_some() {
         let tests = CutoutTests::default();
-        for place in active.iter().filter(|place| hits.prim.0[*place] != NO_HIT) {
+        for place in active.iter() {
             let ray = rays.ray(place);
             let (prim, u, v) = (hits.prim.0[place], hits.u.0[place], hits.v.0[place]);
-            if !tests.is_cut(frame, &ray, (prim, u, v)) {
+            if prim == NO_HIT || !tests.is_cut(frame, &ray, (prim, u, v)) {
                 continue;
             }
             // Few rays; alone, each knows its direction.

@@ -226,6 +226,7 @@ fn snapshot(space: NormalSpace) -> Snapshot {
         scene: Arc::new(Scene {
             displaced: Default::default(),
             tangents: Default::default(),
+            uv_charts: Default::default(),
             name: "ball".into(),
             source: SceneSource::BuiltIn("ball".into()),
             bvh: Bvh::build(&mesh),

@@ -79,6 +79,7 @@ fn rendered(corners: [DVec3; 3], settings: &RenderSettings) -> Picture {
     let scene = Scene {
         displaced: Default::default(),
         tangents: Default::default(),
+        uv_charts: Default::default(),
         name: "one triangle".to_owned(),
         source: SceneSource::BuiltIn("one triangle".to_owned()),
         bvh: Bvh::build(&mesh),
