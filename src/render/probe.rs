@@ -497,11 +497,7 @@ fn is_shadowed_by_relief(
 }
 
 /// The nearest thing between a point and a light.
-fn occluder(
-    frame: &Frame<'_>,
-    point: &LitPoint<'_>,
-    (wi, distance): (V3, f32),
-) -> Option<Nearest> {
+fn occluder(frame: &Frame<'_>, point: &LitPoint<'_>, (wi, distance): (V3, f32)) -> Option<Nearest> {
     let (start, bound) = point.start(wi);
     let ray = Ray {
         origin: offset_by_bound(start, bound, point.s.n_geo, point.s.n_geo).into(),

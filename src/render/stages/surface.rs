@@ -122,9 +122,7 @@ fn run_of(frame: &Frame<'_>, prim: u32, runs: &mut Vec<Run>, likely: usize) -> u
                 parts,
             },
             searches: parts == SurfaceParts::Gradients && material.mapping.searches(),
-            smoothed: frame.smooth_terminator
-                && attributes.smooth
-                && !frame.displaces(attributes),
+            smoothed: frame.smooth_terminator && attributes.smooth && !frame.displaces(attributes),
             displaced: frame.displaces(attributes),
             places: Places::EMPTY,
         });
