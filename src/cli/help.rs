@@ -111,11 +111,13 @@ it looked at. `--` marks figures that are reported without a bar. The exit code 
 falls short, 2 if it could not run.
 
 The families:
-  watertight  rays from inside closed meshes at edges and vertices: how many get out
+  watertight  rays from inside closed meshes at edges and vertices, plain and displaced: how many
+              get out. With RELIEFSCOPE_MODELS=DIR closed scans of that folder, too
   borders     rays a few units in the last place beside borders: how many answers differ from f64
   accuracy    distances, weights, points, texture coordinates, normals: the worst error
   contact     rays leaving a convex body: how many it stops itself, and how far away they start
   convex      pictures of a convex body: how many pixels shadows change
+  terminator  coarse meshes with smooth normals: dark pixels that face the sun, light inside
   sweep       a camera that crosses one pixel: how much longer pixels travel in finer steps
   methods     every method at every angle and amplitude: pixels without a colour, and steps
   maps        maps of all sizes, depths and contents: pixels without a colour

@@ -1,5 +1,7 @@
 //! `stability`: the matrix of extremes, a line a test.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde_json::{Value, json};
@@ -9,7 +11,9 @@ use super::error::CliError;
 use super::output;
 use super::progress::Progress;
 use crate::measure::bench::Machine;
-use crate::measure::stability::{Effort, Finding, Kernel, OffsetRule, Outcome, Plan, run, tests};
+use crate::measure::stability::{
+    Effort, Finding, Kernel, OffsetRule, Outcome, Plan, run, scan_tests, tests,
+};
 
 /// `stability`.
 #[derive(Debug, Args)]
@@ -63,6 +67,8 @@ pub(super) fn run_matrix(args: &StabilityArgs) -> Result<(), CliError> {
         seed: args.seed,
     };
     let mut all = tests(&plan);
+    let models = std::env::var_os("RELIEFSCOPE_MODELS").map(PathBuf::from);
+    all.extend(scan_tests(models.as_deref()));
     all.retain(|test| {
         let line = format!("{} {}", test.family, test.name).to_lowercase();
         args.words

@@ -559,6 +559,27 @@ impl ViewerApp {
         windows::drop_hint_ui(ctx, window);
     }
 
+    /// Takes an edit back that made a number which is none: it differs from itself, so that what is shown would never
+    /// be what was asked for.
+    fn take_nan_back(&mut self) {
+        let Some(doc) = &mut self.doc else { return };
+        if !doc.has_nan() {
+            return;
+        }
+        let sent = self.sent.as_ref().map(|sent| &sent.snapshot);
+        let sent = sent.filter(|sent| Arc::ptr_eq(&sent.scene, &doc.scene));
+        doc.settings = sent.map_or_else(|| doc.original.clone(), |sent| (*sent.settings).clone());
+        if doc.has_nan() {
+            doc.settings = doc.original.clone();
+        }
+        doc.display = self
+            .sent
+            .as_ref()
+            .map_or_else(Default::default, |sent| sent.display);
+        let text = "An edit was taken back: it made a number that is none.";
+        self.toasts.error(text.to_owned());
+    }
+
     /// Compares with what the worker has, and sends it what changed.
     fn submit(&mut self) {
         let Some(doc) = &self.doc else { return };
@@ -628,6 +649,7 @@ impl eframe::App for ViewerApp {
         self.size = viewport::framebuffer_size(&ctx, panes[0]);
         let are_painted = self.viewport_ui(ui, window, panes);
         self.panel_ui(&ctx, window);
+        self.take_nan_back();
         self.submit();
         let is_outdated = self.framebuffer.stats().generation != self.worker.generation();
         self.pacing.wait(&self.worker, is_outdated);

@@ -142,6 +142,14 @@ impl Document {
         placed
     }
 
+    /// Whether an edit made a number that is none. Nothing else differs from itself.
+    #[must_use]
+    pub fn has_nan(&self) -> bool {
+        let (settings, display, original) = (&self.settings, self.display, &self.original);
+        let is_edited = *original == self.original;
+        is_edited && (*settings != self.settings || display != self.display)
+    }
+
     /// The scene file that it was read from, where saving goes without asking.
     #[must_use]
     pub fn scene_file(&self) -> Option<&PathBuf> {

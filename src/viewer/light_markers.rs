@@ -97,6 +97,7 @@ impl Motion {
 
 fn move_light(projection: &Projection, camera: &Camera, light: &mut Light, motion: &Motion) {
     let (dx, dy) = (f64::from(motion.delta.x), f64::from(motion.delta.y));
+    let before = light.kind;
     match &mut light.kind {
         LightKind::Ambient => {}
         LightKind::Point { position, .. } if motion.along => {
@@ -121,6 +122,15 @@ fn move_light(projection: &Projection, camera: &Camera, light: &mut Light, motio
             };
             *direction = (turn * *direction).normalize_or(DVec3::NEG_Z) * direction.length();
         }
+    }
+    // So far away that it cannot be dragged any farther.
+    let is_somewhere = match light.kind {
+        LightKind::Ambient => true,
+        LightKind::Point { position, .. } => position.is_finite(),
+        LightKind::Directional { direction } => direction.is_finite(),
+    };
+    if !is_somewhere {
+        light.kind = before;
     }
 }
 

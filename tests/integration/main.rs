@@ -33,6 +33,7 @@ mod shapes;
 mod specular;
 mod stability;
 mod support;
+mod terminator;
 mod trade;
 #[cfg(feature = "viewer")]
 mod viewer;

@@ -278,6 +278,7 @@ impl Random {
         loaded.display.exposure_ev = self.unit() * 64.0 - 32.0;
         loaded.display.view = View::ALL[self.below(View::ALL.len() as u32) as usize];
         loaded.size = self.maybe(|r| [1 + r.below(4000), 1 + r.below(4000)]);
+        loaded.settings.shading.smooth_terminator = self.flag();
     }
 }
 
@@ -716,6 +717,32 @@ fn files_appear_whole_or_not_at_all() {
         .filter(|name| name.to_string_lossy().contains("reliefscope"))
         .collect();
     assert!(strange.is_empty(), "left behind: {strange:?}");
+}
+
+/// More than would be read back is not written, and what was there stays.
+#[test]
+fn no_longer_file_is_written_than_is_read() {
+    let folder = Folder::new();
+    let mut scene = folder.open("plane.obj");
+    let path = folder.write("saved.toml", "old");
+    let mut name = |bytes: usize| {
+        scene.settings.lights[0].name = "x".repeat(bytes);
+        write_scene(&path, &SceneView::from(&scene))
+    };
+    let error = name(4 << 20).expect_err("longer than four MiB");
+    assert!(
+        matches!(&error, SaveError::TooLong { length, .. } if *length > 4 << 20),
+        "{error}"
+    );
+    assert!(error.to_string().contains("saved.toml"), "{error}");
+    assert_eq!(fs::read_to_string(&path).expect("is there"), "old");
+    // Up to the last byte it is written, and read.
+    name(1).expect("is written");
+    let rest = fs::metadata(&path).expect("is there").len() as usize - 1;
+    name((4 << 20) - rest).expect("as long as can be");
+    assert_eq!(fs::metadata(&path).expect("is there").len(), 4 << 20);
+    read_scene(&path, &LoadOptions::default()).expect("is read");
+    assert!(name((4 << 20) - rest + 1).is_err());
 }
 
 #[test]

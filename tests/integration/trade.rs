@@ -174,6 +174,13 @@ fn on_a_curved_mesh_the_displaced_surface_is_the_truth() {
         let flat = none.silhouette_iou.expect("the truth has an outline");
         assert!(flat > 0.8 && flat <= 1.0, "{angle}: {flat}");
         assert!(displaced.shadow_disagreement < none.shadow_disagreement);
+        // Only where normals of micro-triangles and of the surface between them turn to different sides.
+        assert!(
+            displaced
+                .shadow_disagreement
+                .is_some_and(|share| share < 0.03),
+            "{angle}: {displaced:?}"
+        );
     }
     let doubt = record.views.iter().map(|view| view.truth_doubt_texels);
     assert!(doubt.fold(0.0, f64::max) < 1e-3);
@@ -298,6 +305,59 @@ fn the_published_table_comes_out_against_our_own_truth() {
             cell.variant.label()
         );
     }
+}
+
+/// Slopes in a file, made from the normals that the plane has: the same relief, so the same look.
+#[test]
+fn slopes_are_measured_where_there_are_normals() {
+    let methods = [Method::Bump, Method::Slope, Method::Normal];
+    let plan = Plan {
+        angles_deg: vec![30.0],
+        eight_bits: false,
+        ..tiny(&methods)
+    };
+    let record = swept(reference(), (&plan, None), 0);
+    assert_eq!(record.left_out, Vec::<String>::new());
+    let made = record.precompute.iter().find(|p| p.what.contains("slope"));
+    assert!(made.is_some_and(|p| p.bytes > 1 << 20), "{made:?}");
+    let [bump, slope, normal] =
+        methods.map(|m| cell(&record, m, 30.0, (1.0, false)).geometry.normal_deg);
+    assert!(slope.rms > 0.0);
+    for other in [bump, normal] {
+        let off = (slope.rms - other.rms).abs();
+        assert!(off < 0.15 * other.rms, "{slope:?}, {other:?}");
+    }
+    // Without normals there is nothing to make it of, and the record says so.
+    let record = swept(waves(), (&plan, None), 0);
+    assert!(
+        record
+            .left_out
+            .iter()
+            .any(|what| what.starts_with("slope:"))
+    );
+    assert!(
+        record
+            .cells
+            .iter()
+            .all(|c| c.variant.method != Method::Slope)
+    );
+}
+
+/// What smooths stairs is part of what a method needs beforehand.
+#[test]
+fn smoothed_stairs_are_told_before_what_is_made_of_them() {
+    let told = |destair| {
+        let mut snapshot = waves();
+        let mut settings = (*snapshot.settings).clone();
+        settings.materials[0].maps[0].destair = destair;
+        snapshot.settings = std::sync::Arc::new(settings);
+        let record = swept(snapshot, (&tiny(&[Method::Exact]), None), 1);
+        let names = record.precompute.into_iter().map(|p| p.what);
+        names.collect::<Vec<_>>()
+    };
+    let (stored, smoothed) = (told(false), told(true));
+    assert_eq!(stored.len() + 1, smoothed.len());
+    assert!(smoothed[0].contains("stairs"), "{smoothed:?}");
 }
 
 #[test]

@@ -10,10 +10,11 @@
 //!
 //! The families:
 //!
-//! - `watertight`: no ray leaves a closed mesh
+//! - `watertight`: no ray leaves a closed mesh; `displaced`: nor one that is truly displaced; `scans`: nor a scan
 //! - `borders`: none hits what it passes by
 //! - `accuracy`: distances, weights, points and normals
 //! - `contact`: no false shadow, no lost contact, ray by ray; `convex`: the same in pictures
+//! - `terminator`: where light ends on coarse meshes
 //! - `sweep`: a camera that moves less than a pixel
 //! - `methods`, `maps`: every method at all angles, amplitudes and maps (`board` is their scene)
 //! - `shading`: highlights, lights and mirrors
@@ -25,6 +26,7 @@ mod bodies;
 mod borders;
 mod contact;
 mod convex;
+mod displaced;
 mod faces;
 mod maps;
 mod methods;
@@ -33,8 +35,10 @@ mod placement;
 mod plan;
 mod random;
 mod run;
+mod scans;
 mod shading;
 mod sweep;
+mod terminator;
 mod trees;
 mod watertight;
 
@@ -43,16 +47,19 @@ pub use crate::geometry::{Kernel, OffsetRule};
 pub use plan::{Effort, Finding, Plan, Test};
 pub use random::Random;
 pub use run::{Outcome, run};
+pub use scans::scan_tests;
 
-/// Every test of a plan, family by family.
+/// Every test of a plan, family by family, but for [those of scans](scan_tests).
 #[must_use]
 pub fn tests(plan: &Plan) -> Vec<Test> {
     let families = [
         watertight::tests,
+        displaced::tests,
         borders::tests,
         accuracy::tests,
         contact::tests,
         convex::tests,
+        terminator::tests,
         sweep::tests,
         methods::tests,
         maps::tests,

@@ -9,7 +9,7 @@ use super::{Finding, Kernel, Plan, Random, Test};
 use crate::geometry::{Ray, TriangleMesh};
 
 /// Rays of one bunch: what bundles are made of.
-const BUNCH: usize = 64;
+pub(super) const BUNCH: usize = 64;
 
 /// A line for each body and placement.
 pub(super) fn tests(_plan: &Plan) -> Vec<Test> {
@@ -31,7 +31,7 @@ fn leaks(plan: &Plan, name: &str, body: &Body, placement: Placement) -> Finding 
     let scene = placement.scene(body, false);
     let trees = Trees::new(plan.kernel, &scene.bvh);
     let mut random = plan.random(name);
-    let bunches = plan.effort.pick(8, 160, 3_000) / share(body);
+    let bunches = plan.effort.pick(8, 160, 10_600) / share(body);
     let bunches = bunches.max(1);
     let (mut leaks, mut disagreeing) = (0, 0);
     for bunch in 0..bunches {
@@ -66,7 +66,7 @@ const fn share(body: &Body) -> usize {
 }
 
 /// Rays from one point to neighbouring triangles.
-fn together(mesh: &TriangleMesh, origin: Vec3, random: &mut Random) -> Vec<Ray> {
+pub(super) fn together(mesh: &TriangleMesh, origin: Vec3, random: &mut Random) -> Vec<Ray> {
     let first = random.below(mesh.len());
     let near = |random: &mut Random| (first + random.below(12)) % mesh.len();
     (0..BUNCH)
@@ -78,7 +78,7 @@ fn together(mesh: &TriangleMesh, origin: Vec3, random: &mut Random) -> Vec<Ray> 
 }
 
 /// Rays to anywhere.
-fn scattered(mesh: &TriangleMesh, origins: &[Vec3], random: &mut Random) -> Vec<Ray> {
+pub(super) fn scattered(mesh: &TriangleMesh, origins: &[Vec3], random: &mut Random) -> Vec<Ray> {
     let ray = |&origin: &Vec3| {
         let prim = random.below(mesh.len());
         towards(origin, edge_point(mesh, prim, random))
@@ -88,7 +88,12 @@ fn scattered(mesh: &TriangleMesh, origins: &[Vec3], random: &mut Random) -> Vec<
 
 /// A corner, the middle of an edge, or anywhere on one.
 pub(super) fn edge_point(mesh: &TriangleMesh, prim: usize, random: &mut Random) -> DVec3 {
-    let corners = mesh.corners(prim as u32).map(|c| c.as_dvec3());
+    point_on_edges(mesh.corners(prim as u32), random)
+}
+
+/// The same of three corners.
+pub(super) fn point_on_edges(corners: [Vec3; 3], random: &mut Random) -> DVec3 {
+    let corners = corners.map(|c| c.as_dvec3());
     let first = random.below(3);
     let along = match random.below(3) {
         0 => 0.0,

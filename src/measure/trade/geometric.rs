@@ -119,7 +119,9 @@ impl<'a> TrueView<'a> {
     fn truly_lit(&self, (sight, landing): &(Sight, Landing), tracer: &mut Tracer) -> Vec<bool> {
         let lit = |light: &FrameLight| {
             let wi = towards(light, landing.p);
-            let faces = wi.dot(sight.facet.n_geo) > 0.0 && wi.dot(landing.normal) > 0.0;
+            let micro = landing.micro.map(|micro| micro.normal.as_dvec3());
+            let n_geo = micro.unwrap_or(sight.facet.n_geo);
+            let faces = wi.dot(n_geo) > 0.0 && wi.dot(landing.normal) > 0.0;
             let distance = distance(light, landing.p.as_vec3());
             let hides = |tracer| {
                 let seen = (sight, landing);

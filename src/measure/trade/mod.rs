@@ -2,7 +2,8 @@
 //!
 //! - `plan`: what is measured, in which order, and which part of it a shard takes; `variant`: methods with their
 //!   parameters
-//! - `subject`: the scene, the place that is looked at; `orbit`: cameras around it; `depths`: fewer bits of height
+//! - `subject`: the scene, the place that is looked at; `orbit`: cameras around it; `depths`: fewer bits of height;
+//!   `slopes`: the slope map that a material lacks
 //! - `truth`: where a view ray really lands, in double precision; `facet`: triangles in double precision
 //! - `sights`, `geometric`: view rays through every method, and how far each lands from the truth
 //! - `pictures`: pictures against a reference that knows its own error; `timing`, `precompute`: what it takes
@@ -27,6 +28,7 @@ mod plots;
 mod precompute;
 mod record;
 mod sights;
+mod slopes;
 mod subject;
 mod sweep;
 mod table;

@@ -1,19 +1,58 @@
-//! What searches make of a height map before they can start.
+//! What is made of maps before methods can start.
 
 use std::time::Instant;
 
-use super::{Precompute, Subject};
+use super::{Plan, Precompute, Subject};
 use crate::surface::mapping::Method;
-use crate::texture::{ConeMap, HeightPyramid};
+use crate::texture::{ConeMap, HeightPyramid, MapRole, RawImage, destaired};
+
+/// What the methods of a plan need for the map that is looked at. `slopes` is how many slope maps were made for the
+/// measurement, and in how many milliseconds.
+#[must_use]
+pub fn made_before(
+    subject: &Subject,
+    plan: &Plan,
+    slopes: Option<(usize, f64)>,
+) -> Vec<Precompute> {
+    let mut made = precompute(subject, &plan.methods);
+    if let Some((maps @ 1.., ms)) = slopes {
+        let bytes = subject.image(MapRole::Slope).map_or(0, |image| {
+            let RawImage {
+                width,
+                height,
+                channels,
+                ..
+            } = image.raw;
+            let samples = width as usize * height as usize * usize::from(channels);
+            samples * usize::from(image.raw.bits() / 8)
+        });
+        made.push(Precompute {
+            what: format!("slope maps from normal maps, made for this measurement: {maps} (slope)"),
+            ms,
+            bytes,
+        });
+    }
+    made
+}
 
 /// Makes once more, on one thread or as many as the maker takes, what the methods need for the map that is looked at.
-#[must_use]
-pub fn precompute(subject: &Subject, methods: &[Method]) -> Vec<Precompute> {
+fn precompute(subject: &Subject, methods: &[Method]) -> Vec<Precompute> {
     let (Some(slot), Some(image)) = (subject.height_slot(), subject.height_image()) else {
         return Vec::new();
     };
-    let map = image.height(slot.channel);
     let mut made = Vec::new();
+    if slot.destair {
+        let stored = image.heights(slot.channel);
+        let step = stored.levels().step;
+        let (smoothed, ms) = timed(|| destaired(stored.map(), step, slot.wrap));
+        made.push(Precompute {
+            what: "map with its stairs smoothed (every method that reads heights)".to_owned(),
+            ms,
+            bytes: smoothed.bytes(),
+        });
+    }
+    // What the slot reads, stairs smoothed if it asks for that: what follows is made of it.
+    let map = image.heights_of(slot).map();
     let walks = |m: &Method| m.searches() || *m == Method::Displacement;
     if methods.iter().any(walks) {
         let (pyramid, ms) = timed(|| HeightPyramid::new(map, slot.wrap));
@@ -36,7 +75,8 @@ pub fn precompute(subject: &Subject, methods: &[Method]) -> Vec<Precompute> {
     made
 }
 
-fn timed<T>(make: impl FnOnce() -> T) -> (T, f64) {
+/// What `make` makes, and the milliseconds that it takes.
+pub fn timed<T>(make: impl FnOnce() -> T) -> (T, f64) {
     let began = Instant::now();
     let made = make();
     (made, began.elapsed().as_secs_f64() * 1e3)

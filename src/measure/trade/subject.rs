@@ -7,6 +7,7 @@ use glam::{DVec3, Vec3};
 use super::depths::cut_to_eight_bits;
 use super::orbit::orbited;
 use super::sights::{Pinhole, Sight};
+use super::slopes::add_slope_maps;
 use super::{Truth, Variant, View};
 use crate::render::{Frame, Snapshot, amplitude};
 use crate::scene::{RenderSettings, Scene};
@@ -69,6 +70,19 @@ impl Subject {
         })
     }
 
+    /// Gives materials whose normals are in a map their slopes, too, so that the method that reads them can be measured.
+    /// Returns how many maps were made.
+    pub fn prepare_slopes(&mut self) -> usize {
+        let mut scene = (*self.snapshot.scene).clone();
+        let mut settings = (*self.snapshot.settings).clone();
+        let added = add_slope_maps(&mut scene, &mut settings.materials);
+        if added > 0 {
+            self.snapshot.scene = Arc::new(scene);
+            self.snapshot.settings = Arc::new(settings);
+        }
+        added
+    }
+
     /// Makes ready what views of 8 bits need.
     pub fn prepare_eight_bits(&mut self) {
         let used = self.height_images();
@@ -109,7 +123,13 @@ impl Subject {
     /// Its height map.
     #[must_use]
     pub fn height_image(&self) -> Option<&MapImage> {
-        let slot = self.height_slot()?;
+        self.image(MapRole::Height)
+    }
+
+    /// The picture that the material that is looked at has in this role.
+    #[must_use]
+    pub fn image(&self, role: MapRole) -> Option<&MapImage> {
+        let slot = self.snapshot.settings.materials[self.material].map(role)?;
         self.snapshot.scene.images.get(slot.image)
     }
 

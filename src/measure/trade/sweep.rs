@@ -3,7 +3,7 @@
 use super::geometric::TrueView;
 use super::page::thumbnail;
 use super::pictures::{Compared, Reference};
-use super::precompute::precompute;
+use super::precompute::{made_before, timed};
 use super::record::{FORMAT, Thumbnail};
 use super::sights::{Pinhole, Sights};
 use super::{
@@ -46,6 +46,10 @@ pub fn measure(
     if plan.eight_bits {
         subject.prepare_eight_bits();
     }
+    let slopes = plan
+        .methods
+        .contains(&Method::Slope)
+        .then(|| timed(|| subject.prepare_slopes()));
     let (variants, left_out) = measurable(subject, plan);
     let columns = columns(subject, &variants);
     let views = plan.views_of(shard);
@@ -61,7 +65,7 @@ pub fn measure(
         machines: vec![machine(renderer.threads())],
         partial: false,
         left_out,
-        precompute: precompute(subject, &plan.methods),
+        precompute: made_before(subject, plan, slopes),
         views: Vec::new(),
         cells: Vec::new(),
         pictures: Vec::new(),
@@ -95,7 +99,7 @@ fn measurable(subject: &Subject, plan: &Plan) -> (Vec<Variant>, Vec<String>) {
             Some("normal: the material has no normal map")
         }
         Method::Slope if !subject.has(MapRole::Slope) => Some(
-            "slope: the material has no slope map (from heights it is bump by central differences)",
+            "slope: the material has no slope map, and no normal map to make one from (from heights it is bump by central differences)",
         ),
         _ => None,
     };

@@ -8,9 +8,8 @@ use super::facet::Facet;
 use super::sights::Sight;
 use super::subject::with_mapping;
 use crate::geometry::Ray;
-use crate::math::gamma;
 use crate::render::{Frame, Snapshot};
-use crate::surface::displaced::Tracer;
+use crate::surface::displaced::{SurfaceHit, Tracer};
 use crate::surface::mapping::relief::{LIFT, ReliefField, ReliefRay};
 use crate::surface::mapping::{Derivative, Lookup, MappingSettings, Method};
 use crate::texture::Wrap;
@@ -41,6 +40,9 @@ pub struct Landing {
     pub p: DVec3,
     /// Unit normal of the bilinear relief there.
     pub normal: DVec3,
+    /// The point of the micro-triangle there, where the surface is displaced: shadow rays meet micro-triangles, and so
+    /// they start from them. From the surface in between they would start under those of every hollow.
+    pub micro: Option<SurfaceHit>,
     /// How far the same walk begun elsewhere lands, texels: the rounding of the truth itself.
     pub doubt_texels: f64,
 }
@@ -122,11 +124,10 @@ impl Truth {
                 let field = frame.materials[sight.material].field();
                 field.is_some_and(|field| hidden(field, &sight.facet, landing, wi))
             }
-            Self::Displaced => {
-                let (p, n) = (landing.p.as_vec3(), landing.normal.as_vec3());
-                let bound = p.abs().dot(n.abs()) * gamma(8);
-                is_behind_relief(frame, (p, n, bound), (wi.as_vec3(), distance), tracer)
-            }
+            Self::Displaced => landing.micro.is_some_and(|micro| {
+                let point = (micro.p, micro.normal, micro.bound);
+                is_behind_relief(frame, point, (wi.as_vec3(), distance), tracer)
+            }),
         }
     }
 }
@@ -173,6 +174,7 @@ fn displaced(
         z: (found.point.p - facet.p).dot(facet.normal),
         p: found.point.p,
         normal: found.normal,
+        micro: Some(hit),
         doubt_texels: found.doubt_texels,
     })
 }
@@ -209,6 +211,7 @@ fn walked(field: &ReliefField<'_>, facet: &Facet) -> Option<Landing> {
         z,
         p: facet.p + facet.wo * (z / cos),
         normal: relief_normal(field, facet, place),
+        micro: None,
         doubt_texels: (place[0] - again[0]).hypot(place[1] - again[1]),
     })
 }

@@ -62,8 +62,9 @@ impl LocalRay {
             // As in `RaySlabs`; what is rounded here is small beside it.
             local.margin[axis] = (32.0 * HALF_ULP * (size + from.abs() + 1.0)) as f32;
             local.from[axis] = from as f32;
-            // A little off where the ray does not change: it goes by in no distance that can be.
-            let least = 1e-9 * (1.0 + row.abs().element_sum());
+            // A little off where the ray does not change: it goes by in no distance that can be. A share of what the
+            // rate can be at all, or large pieces, along which everything changes slowly, would be taken for such.
+            let least = 1e-9 * row.abs().element_sum();
             let rate = if rate.abs() < least {
                 least.copysign(rate)
             } else {

@@ -3,6 +3,7 @@
 //! What a ray meets is what it meets where micro-triangles are made on the way, to the bit: the same corners, the same
 //! test, the same winner among equals.
 
+use glam::Vec3;
 use rayon::prelude::*;
 
 use super::fine::{self, MicroHit, PARTS, PartKey, Patch};
@@ -76,6 +77,27 @@ impl MicroMesh {
     #[must_use]
     pub const fn bvh(&self) -> &Bvh {
         &self.bvh
+    }
+
+    /// How many micro-triangles there are; some may have no area.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.leaves.len() * PARTS
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.leaves.is_empty()
+    }
+
+    /// Corners of a micro-triangle.
+    ///
+    /// # Panics
+    /// If `index` is not below [`Self::len`].
+    #[must_use]
+    pub fn corners(&self, index: u32) -> [Vec3; 3] {
+        self.bvh.group_corners(index)
     }
 
     /// Heap bytes.

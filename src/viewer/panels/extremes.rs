@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{RichText, Slider, Ui};
+use egui::{RichText, Slider, SliderClamping, Ui};
 
 use super::method::usual_amplitude;
 use super::{Action, PanelContext};
@@ -95,14 +95,16 @@ fn angle_ui(ui: &mut Ui, doc: &mut Document) {
     let to_eye = (camera.eye - camera.target).normalize_or(up);
     let shown = to_eye.dot(up).clamp(-1.0, 1.0).acos().to_degrees();
     let mut angle = shown;
-    row_ui(ui, Caption::new("View angle"), |ui| {
+    let moved = row_ui(ui, Caption::new("View angle"), |ui| {
+        // A camera below the horizon stays there until somebody moves the slider.
         let slider = Slider::new(&mut angle, 0.6..=89.99)
+            .clamping(SliderClamping::Edits)
             .suffix("\u{b0}")
             .max_decimals(2);
-        ui.add(slider);
+        ui.add(slider).changed()
     });
     // A slider rounds what it shows; only a change that was meant turns the camera.
-    if (angle - shown).abs() > 0.02 {
+    if moved && (angle - shown).abs() > 0.02 {
         camera.orbit(0.0, (shown - angle).to_radians());
     }
 }
@@ -114,13 +116,14 @@ fn amplitude_ui(ui: &mut Ui, doc: &mut Document) {
     let shown = (amplitude.unwrap_or(usual) / usual).log10();
     let shown = shown.clamp(*AMPLITUDES.start(), *AMPLITUDES.end());
     let mut exponent = shown;
-    row_ui(ui, Caption::new("Amplitude 10^"), |ui| {
+    let moved = row_ui(ui, Caption::new("Amplitude 10^"), |ui| {
         let slider = Slider::new(&mut exponent, AMPLITUDES).max_decimals(2);
         // Named before the hint: a hint would become the name of a control without one.
         ui.name_inputs("Amplitude 10^", |ui| ui.add(slider))
-            .on_hover_text("Of the largest amplitude that a material has by itself");
+            .on_hover_text("Of the largest amplitude that a material has by itself")
+            .changed()
     });
-    if (exponent - shown).abs() > 0.005 {
+    if moved && (exponent - shown).abs() > 0.005 {
         *amplitude = Some(usual * 10_f64.powf(exponent));
     }
 }

@@ -169,8 +169,8 @@ fn light_ui(ui: &mut Ui, light: &mut Light, original: Option<&Light>, speed: f64
                 0.01,
                 direction,
             );
-            // A direction of length zero lights nothing and cannot be dragged back.
-            if direction.length_squared() < 1e-12 || !direction.is_finite() {
+            // A direction of length zero lights nothing and cannot be dragged back, nor can one without a length.
+            if !(1e-12..=f64::MAX).contains(&direction.length_squared()) {
                 *direction = before;
             }
         }

@@ -1,11 +1,15 @@
 //! Every control once, found by role and name, with a look at what it did.
 
+use std::path::Path;
+
 use egui::accesskit::Role;
 use glam::DVec3;
-use reliefscope::scene::{ShadingModel, TextureFilter};
+use reliefscope::scene::load::LoadOptions;
+use reliefscope::scene::{ShadingModel, TextureFilter, open};
 use reliefscope::shading::{Falloff, LightKind};
 use reliefscope::surface::mapping::{Derivative, Lookup, Method};
 use reliefscope::texture::{Channel, MapRole, NormalSpace, Wrap};
+use reliefscope::viewer::document::Document;
 
 use super::driver::Driver;
 
@@ -89,6 +93,29 @@ fn the_lights_section() {
     driver.button(&format!("{} remove", names[1]));
     assert_eq!(driver.settings().lights.len(), count + 2);
     assert!(driver.settings().lights.iter().all(|l| l.name != names[1]));
+}
+
+/// A number that is none differs from itself: what is shown would never be what was asked for.
+#[test]
+fn no_edit_leaves_a_number_that_is_none() {
+    let mut driver = with_section("Lights");
+    driver.button("Directional");
+    let lights = &driver.settings().lights;
+    let (last, name) = (lights.len() - 1, lights[lights.len() - 1].name.clone());
+    let before = lights[last].kind;
+    // Its length is more than a number can tell.
+    driver.number(&format!("{name} direction x"), 1e300);
+    assert_eq!(driver.settings().lights[last].kind, before);
+    assert!(!driver.doc().has_nan());
+    driver.settle();
+    let loaded = open(Path::new("extremes"), &LoadOptions::default()).expect("is built in");
+    let mut doc = Document::new(loaded);
+    assert!(!doc.has_nan());
+    doc.settings.lights[0].intensity = f32::NAN;
+    assert!(doc.has_nan());
+    doc.settings.lights[0].intensity = 1.0;
+    doc.display.exposure_ev = f32::NAN;
+    assert!(doc.has_nan());
 }
 
 #[test]
@@ -213,6 +240,8 @@ fn the_shading_section() {
     assert_eq!(driver.settings().shading.filter, TextureFilter::Mip);
     driver.check("Specular antialiasing");
     assert!(driver.settings().shading.specular_antialiasing);
+    driver.check("Smooth terminator");
+    assert!(driver.settings().shading.smooth_terminator);
     driver.check("Shadows");
     driver.number("Mirror bounces", 5.0);
     let shading = driver.settings().shading;

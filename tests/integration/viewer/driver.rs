@@ -26,6 +26,12 @@ impl TestRenderer for Nowhere {
     }
 }
 
+/// Whether the picture shown answers the last edit.
+fn answers(app: &ViewerApp) -> bool {
+    let shown = !matches!(app.progress(), Progress::Waiting | Progress::Outdated);
+    app.document().is_some() && !app.is_loading() && shown
+}
+
 pub fn reference(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
         .join("tests/data/reference")
@@ -68,24 +74,33 @@ impl Driver {
 
     /// Steps until the shown picture answers the last edit.
     pub fn settle(&mut self) {
-        self.wait_until(|app| {
-            let shown = !matches!(app.progress(), Progress::Waiting | Progress::Outdated);
-            app.document().is_some() && !app.is_loading() && shown
-        });
+        self.wait_until(answers);
+    }
+
+    /// The same for so many steps of a millisecond; says whether it does.
+    pub fn settles_within(&mut self, steps: usize) -> bool {
+        self.comes_true(answers, steps)
     }
 
     pub fn wait_until(&mut self, done: impl Fn(&ViewerApp) -> bool) {
+        if self.comes_true(done, PATIENCE) {
+            return;
+        }
+        let texts: Vec<_> = self.app().messages().collect();
+        panic!("not done: {:?} {texts:?}", self.app().progress());
+    }
+
+    fn comes_true(&mut self, done: impl Fn(&ViewerApp) -> bool, steps: usize) -> bool {
         // Two steps at least: one to take the input, one to draw what followed.
         self.harness.run_steps(2);
-        for _ in 0..PATIENCE {
+        for _ in 0..steps {
             if done(self.harness.state()) {
-                return;
+                return true;
             }
             std::thread::sleep(Duration::from_millis(1));
             self.harness.step();
         }
-        let texts: Vec<_> = self.app().messages().collect();
-        panic!("not done: {:?} {texts:?}", self.app().progress());
+        false
     }
 
     pub fn app(&self) -> &ViewerApp {

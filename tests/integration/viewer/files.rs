@@ -11,7 +11,7 @@ use reliefscope::viewer::status::Progress;
 use super::driver::{Driver, reference};
 
 /// Types into the path field.
-fn type_path(driver: &mut Driver, field: &str, path: &std::path::Path) {
+pub fn type_path(driver: &mut Driver, field: &str, path: &std::path::Path) {
     let text = path.to_str().expect("UTF-8").to_owned();
     driver
         .node(Role::TextInput, field)

@@ -9,6 +9,7 @@ use reliefscope::shading::LightKind;
 use reliefscope::viewer::status::grouped;
 
 use super::driver::{Driver, reference};
+use super::files::type_path;
 
 fn colors(driver: &Driver) -> Vec<[u8; 3]> {
     let image = driver.app().image().expect("a picture");
@@ -207,4 +208,44 @@ fn edits_survive_a_move() {
         "{differing} of {}",
         before.len()
     );
+}
+
+/// A picture that was added in the window goes along, too, and is still shown.
+#[test]
+fn added_maps_survive_a_move() {
+    let mut driver = Driver::open("extremes");
+    driver.section("Materials");
+    let images = driver.doc().scene.images.len();
+    let maps = driver.settings().materials[0].maps.len();
+    type_path(&mut driver, "Picture path", &reference("normal.png"));
+    driver.button("Add picture");
+    driver.wait_until(|app| {
+        app.document()
+            .is_some_and(|doc| doc.settings.materials[0].maps.len() == maps + 1)
+    });
+    let added = driver.settings().materials[0].maps[maps].clone();
+    assert_eq!(added.image, images);
+    driver.section("Method");
+    driver.section("Extremes");
+    for (slider, value, name) in [
+        ("Scale 10^", 3.0, "extremes@1e3"),
+        ("Radii away 10^", 2.0, "extremes@1e3,1e2"),
+    ] {
+        driver.slider(slider, value);
+        let is_there = |source: &SceneSource| *source == SceneSource::BuiltIn(name.into());
+        driver.wait_until(|app| {
+            app.document()
+                .is_some_and(|doc| is_there(&doc.scene.source))
+        });
+        driver.settle();
+        let doc = driver.doc();
+        assert_eq!(doc.scene.images.len(), images + 1, "{name}");
+        let path = doc.scene.images[images].path.as_deref();
+        assert_eq!(path, Some(reference("normal.png").as_path()), "{name}");
+        let slot = &doc.settings.materials[0].maps[maps];
+        assert_eq!((slot.image, slot.role), (added.image, added.role), "{name}");
+        // What is a length goes along.
+        let [before, after] = [&added, slot].map(|slot| slot.baked_amplitude.expect("known"));
+        assert!((after / before * 1e-3 - 1.0).abs() < 1e-6, "{name}");
+    }
 }

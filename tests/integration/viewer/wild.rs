@@ -10,6 +10,7 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use reliefscope::measure::stability::Random;
+use reliefscope::surface::mapping::Method;
 
 use super::driver::{Driver, WINDOW, reference};
 
@@ -19,6 +20,8 @@ const ACTIONS: usize = 300;
 const ROUND: usize = 50;
 /// Small pictures: some settings that the hand finds take a second for a thousand pixels.
 const PIXELS_PER_POINT: f32 = 0.04;
+/// Steps of a millisecond after which a picture is given up for a fast one.
+const SLOW: usize = 10_000;
 /// Rounds between two lines that say how far it is.
 const TOLD: usize = 20;
 /// What the memory of late rounds may hold beyond that of early ones: allocators keep what large scenes left.
@@ -162,16 +165,32 @@ fn grows(rounds: &[u64]) -> bool {
         .is_some_and(|(early, late)| *late > early + SLACK)
 }
 
-/// Changes the size of the picture, so that another has to come, and waits for it.
-fn ask_for_a_frame(driver: &mut Driver) {
+/// Changes the size of the picture, so that another has to come, and waits for it. A picture that takes too long must
+/// end at once when it is out of date: the method `none` takes its place. Says whether that was needed.
+fn ask_for_a_frame(driver: &mut Driver) -> bool {
     driver.harness.set_size(WINDOW);
     driver.key(Key::Escape);
-    driver.settle();
+    let slow = !driver.settles_within(SLOW);
+    if slow {
+        let doc = driver.doc();
+        eprintln!("slow: {:?}, {:?}", doc.scene.source, doc.settings.mapping);
+        let before = driver.settings().clone();
+        driver.harness.run_steps(5);
+        assert_eq!(
+            &before,
+            driver.settings(),
+            "settings that change by themselves"
+        );
+        driver.key(Key::Num1);
+        assert_eq!(driver.settings().mapping.method, Method::None);
+        driver.settle();
+    }
     let before = driver.app().stats().generation;
     driver.harness.set_size(WINDOW * 0.9);
     driver.settle();
     let after = driver.app().stats().generation;
     assert!(after > before, "still frame {before}");
+    slow
 }
 
 #[test]
@@ -181,12 +200,12 @@ fn whatever_the_hand_does_pictures_come() {
     eprintln!("seed {seed}, {actions} actions");
     let mut random = Random::new(seed as u64);
     let mut driver = Driver::open_at(reference("bump.toml"), PIXELS_PER_POINT);
-    let mut memory = Vec::new();
+    let (mut memory, mut slow) = (Vec::new(), 0);
     for action in 0..actions {
         act(&mut driver, &mut random);
         if action % ROUND == ROUND - 1 {
             let round = action / ROUND;
-            ask_for_a_frame(&mut driver);
+            slow += usize::from(ask_for_a_frame(&mut driver));
             let failed = driver
                 .app()
                 .messages()
@@ -201,7 +220,7 @@ fn whatever_the_hand_does_pictures_come() {
     }
     let mib = |bytes: Option<&u64>| bytes.map_or(0, |bytes| bytes >> 20);
     let (least, most) = (mib(memory.iter().min()), mib(memory.iter().max()));
-    eprintln!("seed {seed}: {actions} actions, {least} to {most} MiB");
+    eprintln!("seed {seed}: {actions} actions, {least} to {most} MiB, {slow} slow pictures");
     assert!(!grows(&memory), "seed {seed}: {memory:?}");
 }
 
