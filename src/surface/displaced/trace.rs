@@ -15,6 +15,9 @@ use crate::math::simd::{Kernel, Simd, SimdLevel};
 use crate::surface::SurfaceInteraction;
 use crate::surface::mapping::relief::{ReliefRay, Walk};
 
+/// Prisms of flat reliefs that are kept at hand.
+const PRISMS: usize = 16;
+
 /// A point of a displaced surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceHit {
@@ -290,7 +293,8 @@ impl Kernel for Visit<'_, '_, '_> {
             displacement,
             micro,
         } = self.mesh;
-        let mut last_prism: Option<(u32, FlatPrism<'_, '_>)> = None;
+        // Rays nearby meet the same few triangles by turns.
+        let mut prisms: [Option<(u32, FlatPrism<'_, '_>)>; PRISMS] = [None; PRISMS];
         let Tracer {
             asked, rays, jobs, ..
         } = self.tracer;
@@ -306,18 +310,12 @@ impl Kernel for Visit<'_, '_, '_> {
                 let Piece { prim, shape, .. } = displacement.pieces[i as usize];
                 match shape {
                     Shape::Flat => {
-                        let prism = match last_prism {
-                            Some((known, prism)) if known == prim => prism,
-                            _ => {
-                                let Some(prism) =
-                                    FlatPrism::new(mesh, &reliefs, displacement, prim)
-                                else {
-                                    continue;
-                                };
-                                last_prism = Some((prim, prism));
-                                prism
-                            }
-                        };
+                        let kept = &mut prisms[prim as usize % PRISMS];
+                        if kept.is_none_or(|(known, _)| known != prim) {
+                            let prism = FlatPrism::new(mesh, &reliefs, displacement, prim);
+                            *kept = prism.map(|prism| (prim, prism));
+                        }
+                        let Some((_, prism)) = kept else { continue };
                         if let Some((ray, from)) = prism.clip(&ray, f64::from(asked.best.t)) {
                             jobs.push(Job {
                                 asked: index,
