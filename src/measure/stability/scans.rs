@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::f64::consts::TAU;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::{DVec3, Vec3};
 
@@ -45,7 +45,7 @@ pub fn scan_tests(models: Option<&Path>) -> Vec<Test> {
 }
 
 /// How many rays from inside get out, or are seen differently by some level.
-fn leaks(plan: &Plan, name: &str, path: &PathBuf) -> Finding {
+fn leaks(plan: &Plan, name: &str, path: &Path) -> Finding {
     let nothing = |why: String| Finding::none_of(0, "leaks", 0).with_note(why);
     let scene = match load_model(path, &LoadOptions::default()) {
         Ok(loaded) => loaded.scene,

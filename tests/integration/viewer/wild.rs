@@ -166,7 +166,8 @@ fn grows(rounds: &[u64]) -> bool {
 }
 
 /// Changes the size of the picture, so that another has to come, and waits for it. A picture that takes too long must
-/// end at once when it is out of date: the method `none` takes its place. Says whether that was needed.
+/// end when it is out of date, after the tile at hand: the method `none` takes its place, without a comparison. Says
+/// whether that was needed.
 fn ask_for_a_frame(driver: &mut Driver) -> bool {
     driver.harness.set_size(WINDOW);
     driver.key(Key::Escape);
@@ -181,6 +182,9 @@ fn ask_for_a_frame(driver: &mut Driver) -> bool {
             driver.settings(),
             "settings that change by themselves"
         );
+        if driver.doc().comparison.request().is_some() {
+            driver.key(Key::C);
+        }
         driver.key(Key::Num1);
         assert_eq!(driver.settings().mapping.method, Method::None);
         driver.settle();
