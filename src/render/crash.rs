@@ -24,7 +24,9 @@ fn search(snapshot: &Snapshot) -> Option<[u32; 2]> {
     for &index in &film.order {
         let mut tile = lock(&film.tiles[index]);
         let mut scratch = Scratch::default();
-        if !panics(&mut || tile.sample(&frame, None, &mut scratch, &mut ())) {
+        if !panics(&mut || {
+            tile.sample(&frame, None, &mut scratch, &mut ());
+        }) {
             continue;
         }
         let ([x0, y0], [columns, rows]) = (tile.pixels.corner, tile.size);

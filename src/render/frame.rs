@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::Snapshot;
 use super::material::{BoundOpacity, FrameMaterial};
+use super::{Snapshot, Stop};
 use crate::geometry::bvh::Bvh;
 use crate::geometry::{Hit, Ray, TangentCell, TriangleAttributes, TriangleMesh, UvBox, UvCharts};
 use crate::math::simd::SimdLevel;
@@ -95,6 +95,8 @@ pub struct Frame<'a> {
     pub up: Vec3,
     /// Internal units per world unit.
     pub scale: f64,
+    /// Asked while a tile is made whose rays may take long.
+    pub stop: Stop<'a>,
 }
 
 impl<'a> Frame<'a> {
@@ -134,6 +136,7 @@ impl<'a> Frame<'a> {
             background: settings.shading.background,
             scale: scene.normalization.scale,
             up: settings.camera.up.normalize_or(glam::DVec3::Z).as_vec3(),
+            stop: Stop::default(),
         }
     }
 
@@ -147,6 +150,12 @@ impl<'a> Frame<'a> {
                 (displaced.displacement).make_micro(displaced.mesh(mesh), memory, level, stop);
             displaced.micro = made;
         }
+    }
+
+    /// Whether the tile under way was left off, so that nothing in it is to be used.
+    #[must_use]
+    pub fn is_left_off(&self) -> bool {
+        self.displaced.is_some() && self.stop.now()
     }
 
     /// Whether triangles of this kind are displaced, so that they are not there themselves.

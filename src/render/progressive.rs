@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::film::{Film, Picture, lock};
 use super::recorder::{Recorder, Yardsticks, texels_per_uv};
 use super::stages::{Scratch, StageWatch};
-use super::{Counters, Frame, Recording, Records};
+use super::{Counters, Frame, Recording, Records, Stop};
 use crate::math::{LinearRgb, SrgbEncoder};
 use crate::scene::{RenderSettings, Scene};
 use crate::surface::mapping::MappingSettings;
@@ -149,7 +149,8 @@ impl Progressive {
     }
 
     /// Brings all tiles of a film to `goal` samples. `stop` is asked only before tiles that need one, so
-    /// that passes stopped again and again still come to an end.
+    /// that passes stopped again and again still come to an end; and within tiles of displaced surfaces, one of
+    /// which may take seconds.
     fn render<W: StageWatch + Default + Send>(
         &self,
         film: &Film,
@@ -164,6 +165,7 @@ impl Progressive {
         if film.stride == 1 && film.samples() < goal {
             self.pool.install(|| frame.make_ready(stop));
         }
+        frame.stop = Stop::when(stop);
         let recording = self.recording;
         let yardsticks =
             (recording != Recording::Nothing).then(|| Yardsticks::new(snapshot, recording));
@@ -182,14 +184,20 @@ impl Progressive {
                     if stop() {
                         break;
                     }
-                    match yardsticks.as_ref().filter(|_| tile.samples == 0) {
+                    let end = match yardsticks.as_ref().filter(|_| tile.samples == 0) {
                         None => tile.sample(&frame, coarser, &mut scratch, &mut watch),
                         Some(yardsticks) => {
                             let mut recorder = Recorder::new(yardsticks);
                             let mut both = (&mut watch, &mut recorder);
-                            tile.sample(&frame, coarser, &mut scratch, &mut both);
-                            tile.records = recorder.finish(&scratch.work.radiance);
+                            let end = tile.sample(&frame, coarser, &mut scratch, &mut both);
+                            if end == PassEnd::Complete {
+                                tile.records = recorder.finish(&scratch.work.radiance);
+                            }
+                            end
                         }
+                    };
+                    if end == PassEnd::Stopped {
+                        break;
                     }
                 }
                 done.fetch_add(1, Ordering::Relaxed);

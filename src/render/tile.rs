@@ -6,7 +6,7 @@ use super::stages::camera::Pixels;
 use super::stages::{
     self, Column, Column3, PLACES, Scratch, Stage, StageWatch, camera, film, trace,
 };
-use super::{Counters, Frame, PixelRecord};
+use super::{Counters, Frame, PassEnd, PixelRecord};
 use crate::geometry::HitLanes;
 
 /// Pixels along one side of a tile. 32 measured well: enough rays to amortise a stage, small enough to
@@ -63,15 +63,16 @@ impl Tile {
     }
 
     /// Renders the next sample of every pixel. The first takes hits over from a coarser film of the same
-    /// picture, if there is one.
+    /// picture, if there is one. A tile that is left off on the way stays as it was, but for its hits.
     pub fn sample(
         &mut self,
         frame: &Frame<'_>,
         coarser: Option<&Film>,
         scratch: &mut Scratch,
         watch: &mut impl StageWatch,
-    ) {
+    ) -> PassEnd {
         watch.begin();
+        let before = self.counters;
         let (index, counters) = (self.samples, &mut self.counters);
         let Scratch { hits, known, work } = scratch;
         camera::camera_rays(frame, &self.pixels, index, &mut work.rays);
@@ -79,7 +80,8 @@ impl Tile {
         // The first sample's hits are kept for the next snapshot, which may only shade them anew.
         let hits = if index == 0 { &mut self.hits } else { hits };
         let is_unknown = index > 0 || !self.knows_hits;
-        if is_unknown || (watch.wants_every_ray() && frame.displaced.is_some()) {
+        let traces = is_unknown || (watch.wants_every_ray() && frame.displaced.is_some());
+        if traces {
             known.clear();
             // Hits on displaced surfaces are more than a cached hit can tell.
             let coarser = coarser.filter(|_| index == 0 && frame.displaced.is_none());
@@ -103,6 +105,11 @@ impl Tile {
         watch.done(Stage::Trace);
         work.shade_hits(frame, hits, stages::mirrors_at(frame, 0), counters, watch);
         scratch.follow_mirrors(frame, counters, watch);
+        if frame.is_left_off() {
+            self.counters = before;
+            self.knows_hits &= index > 0 || !traces;
+            return PassEnd::Stopped;
+        }
         counters.non_finite += film::add(
             frame,
             &self.pixels.active,
@@ -112,5 +119,6 @@ impl Tile {
         );
         self.samples += 1;
         watch.done(Stage::Resolve);
+        PassEnd::Complete
     }
 }

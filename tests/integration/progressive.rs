@@ -3,6 +3,7 @@
 use std::f32::consts::TAU;
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::DVec3;
 use reliefscope::geometry::simd::SimdLevel;
@@ -306,4 +307,28 @@ fn counts_are_exact() {
     );
     assert_eq!(counters.shadow_rays, 2 * points, "one a light and point");
     assert!(counters.power_calls > 0 && counters.power_calls <= 2 * points);
+}
+
+#[test]
+fn displaced_tiles_that_are_left_off_on_the_way_leave_no_trace() {
+    let snapshot = edited(&mirrored(&waves()), |s| {
+        s.mapping.method = Method::Displacement;
+        s.samples = 2;
+    });
+    let whole = converged(&snapshot, 1);
+    let mut renderer = Progressive::new(1).expect("a thread");
+    renderer.start(snapshot.clone());
+    let mut stopped = 0;
+    // Each time a little later, until nothing is left to stop.
+    for patience in 0.. {
+        if renderer.is_converged() {
+            break;
+        }
+        let asked = AtomicU32::new(0);
+        let stop = || asked.fetch_add(1, Ordering::Relaxed) >= patience;
+        stopped += u32::from(renderer.pass(&stop) == PassEnd::Stopped);
+    }
+    assert!(stopped > 20, "asked within tiles: stopped {stopped} times");
+    assert_eq!(bits(&whole.picture()), bits(&renderer.picture()));
+    assert_eq!(whole.counters(), renderer.counters());
 }

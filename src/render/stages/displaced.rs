@@ -23,7 +23,7 @@ pub fn closest_hits(
     for place in places.iter() {
         tracer.push_for(place, rays.lanes.ray(place), rays.lanes.t_max.0[place]);
     }
-    tracer.run(mesh, Search::Closest, frame.level);
+    tracer.run_until(mesh, Search::Closest, frame.level, &|| frame.stop.now());
     counters.relief_steps += tracer.steps();
     let mut lanes = hits.displaced.take().unwrap_or_default();
     lanes.places = Places::EMPTY;
@@ -74,7 +74,7 @@ pub fn any_hits(
     for place in places.iter() {
         tracer.push_for(place, shadows.rays.ray(place), shadows.rays.t_max.0[place]);
     }
-    tracer.run(mesh, Search::Any, frame.level);
+    tracer.run_until(mesh, Search::Any, frame.level, &|| frame.stop.now());
     counters.relief_steps += tracer.steps();
     for (index, place) in places.iter().enumerate() {
         if tracer.is_hit(index) {

@@ -15,6 +15,9 @@ use crate::math::simd::{Kernel, Simd, SimdLevel};
 use crate::surface::SurfaceInteraction;
 use crate::surface::mapping::relief::{ReliefRay, Walk};
 
+/// Rays that are traced without asking whether anybody wants them still: a few milliseconds, at the worst.
+const RAYS_BETWEEN_STOPS: usize = 16;
+
 /// Prisms of flat reliefs that are kept at hand.
 const PRISMS: usize = 16;
 
@@ -175,6 +178,17 @@ impl Tracer {
 
     /// Finds what all rays meet.
     pub fn run(&mut self, mesh: DisplacedMesh<'_, '_>, search: Search, level: SimdLevel) {
+        self.run_until(mesh, search, level, &|| false);
+    }
+
+    /// The same, but leaves off soon after `stop` says so; what was found then means nothing.
+    pub fn run_until(
+        &mut self,
+        mesh: DisplacedMesh<'_, '_>,
+        search: Search,
+        level: SimdLevel,
+        stop: &dyn Fn() -> bool,
+    ) {
         self.jobs.clear();
         if let Some(micro) = mesh.micro {
             self.meet_all(micro, search);
@@ -185,6 +199,7 @@ impl Tracer {
                 mesh,
                 search,
                 tracer: self,
+                stop,
             });
             self.walk(mesh, level);
         }
@@ -281,6 +296,7 @@ struct Visit<'a, 't, 'm> {
     mesh: DisplacedMesh<'a, 'm>,
     search: Search,
     tracer: &'t mut Tracer,
+    stop: &'t dyn Fn() -> bool,
 }
 
 impl Kernel for Visit<'_, '_, '_> {
@@ -301,6 +317,9 @@ impl Kernel for Visit<'_, '_, '_> {
         let door = (&reliefs, displacement);
         let mut meeting = Meeting::new(door);
         for (index, (asked, &ray)) in asked.iter_mut().zip(&*rays).enumerate() {
+            if index % RAYS_BETWEEN_STOPS == 0 && (self.stop)() {
+                break;
+            }
             if asked.blocked {
                 continue;
             }
