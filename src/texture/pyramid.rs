@@ -64,7 +64,7 @@ impl Layout {
         } else {
             [2, 2 * short]
         };
-        let nodes = 2 * short << top;
+        let nodes = (2 * short) << top;
         Self {
             size: [w, h],
             top,

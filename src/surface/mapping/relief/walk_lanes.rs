@@ -438,7 +438,7 @@ impl<S: Simd> Lanes<S> {
         self.inv_size = taken.select(one / size, self.inv_size);
         self.steps = taken.select(zero, self.steps);
         self.cap = taken.select(cap, self.cap);
-        self.busy = self.busy | taken;
+        self.busy |= taken;
     }
 
     /// One step of every walk: see [`Typed::walk`], whose every operation this repeats. Walks that are over go on
@@ -491,15 +491,14 @@ impl<S: Simd> Lanes<S> {
         self.inv_size = descends.select(inv * 2.0, inv_size);
 
         let ended = self.busy & (capped | found | past_end);
-        self.busy = self.busy & !ended;
+        self.busy &= !ended;
         let results = &mut self.results;
         results.steps = ended.select(self.steps, results.steps);
         results.capped = ended.select(capped, results.capped);
         results.found = ended.select(found, results.found);
         results.tau = ended.select(tau, results.tau);
-        for k in 0..3 {
-            results.parabola[k] = ended.select(parabola[k], results.parabola[k]);
-        }
+        let ([a, b, c], [x, y, z]) = (parabola, results.parabola);
+        results.parabola = [ended.select(a, x), ended.select(b, y), ended.select(c, z)];
         results.len = ended.select(len, results.len);
         self.busy.to_bitmask()
     }
