@@ -16,11 +16,13 @@ use reliefscope::math::{LinearRgb, SrgbEncoder, hash, srgb8_from_linear, unit_in
 use reliefscope::measure::bench::grid_scene;
 use reliefscope::measure::bench::points::{Found, POINTS, PointWork};
 use reliefscope::render::{RayKind, RayList, rays_of};
+use reliefscope::surface::mapping::relief::{ReliefField, ReliefRay, Walk};
 use reliefscope::surface::mapping::{
     BoundHeight, BoundNormal, MappingSettings, MaterialMapping, MaterialMaps, Method,
 };
 use reliefscope::texture::{
-    Addressing, Channel, ColorMap, HeightMap, NormalMap, RawImage, Samples, Wrap,
+    Addressing, Channel, ColorMap, Grid, HeightMap, HeightPyramid, NormalMap, RawImage, Samples,
+    Wrap,
 };
 
 fn main() {
@@ -207,6 +209,60 @@ fn mapping(bencher: Bencher, method: &str) {
     };
     let work = PointWork::Mapping(MaterialMapping::choose(&settings, &maps));
     at_points(bencher, work, How::Together);
+}
+
+/// Rays at 45° from the top of a relief of bricks to where they meet it.
+#[divan::bench(args = HOW)]
+fn exact_walks(bencher: Bencher, how: How) {
+    let joint = |i: u32| i % 128 < 12;
+    let bricks = (0..1 << 20_u32).map(|i| {
+        let (x, y) = (i % 1024, i / 1024);
+        let depth = if joint(x + y / 128 * 64) || joint(y) {
+            0
+        } else {
+            50_000
+        };
+        depth + (number(i as usize) * 5000.0) as u16
+    });
+    let heights = HeightMap::U16(Grid::new(1024, 1024, bricks.collect()));
+    let addressing = Addressing {
+        scale: Vec2::ONE,
+        offset: Vec2::ZERO,
+        wrap: Wrap::Repeat,
+    };
+    let pyramid = HeightPyramid::new(&heights, Wrap::Repeat);
+    let height = BoundHeight::new(&heights, addressing, 0.03, -0.03);
+    let field = ReliefField::new(height, &pyramid).expect("the pyramid of this map");
+    let [low, high] = field.range();
+    // As neighbouring pixels see them.
+    let rays: Vec<ReliefRay> = (0..1024_u32)
+        .map(|i| {
+            let start = [
+                200.3 + f64::from(i % 32) * 1.7,
+                300.1 + f64::from(i / 32) * 2.3,
+            ];
+            ReliefRay::by_height(start, [120.0, 1024.0], high, low - (high - low) * 1e-6)
+        })
+        .collect();
+    let walk = |how, walks: &mut Vec<Walk>| match how {
+        How::Alone => {
+            for (walk, ray) in walks.iter_mut().zip(&rays) {
+                *walk = field.walk(ray);
+            }
+        }
+        How::Together => field.walk_all(simd_level(), &rays, walks),
+    };
+    let mut walks = vec![Walk::NONE; rays.len()];
+    walk(How::Alone, &mut walks);
+    let alone = walks.clone();
+    walk(how, &mut walks);
+    assert_eq!(walks, alone);
+    bencher
+        .counter(ItemsCount::new(rays.len()))
+        .bench_local(|| {
+            walk(how, &mut walks);
+            black_box(&walks);
+        });
 }
 
 #[divan::bench]
