@@ -6,6 +6,8 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::Random;
+use crate::geometry::TriangleAttributes;
+use crate::scene::built_in::meshes::{Vertex, WorldMesh};
 
 /// A closed surface about the origin, of radius about 1.
 #[derive(Debug, Clone)]
@@ -18,6 +20,28 @@ pub(super) struct Body {
     pub triangles: Vec<[u32; 3]>,
     /// A point well inside.
     pub inside: fn(&mut Random) -> DVec3,
+}
+
+impl Body {
+    /// The body as a mesh, with normals that point away from its middle and texture coordinates that follow from
+    /// places. Flat-shaded unless `smooth`.
+    pub fn mesh(&self, smooth: bool) -> WorldMesh {
+        let vertex = |&p: &DVec3| Vertex {
+            position: p,
+            normal: p.normalize_or(DVec3::Z),
+            uv: p.truncate(),
+        };
+        let attributes = TriangleAttributes {
+            material: 0,
+            has_uv: true,
+            smooth,
+        };
+        WorldMesh {
+            vertices: self.vertices.iter().map(vertex).collect(),
+            indices: self.triangles.clone(),
+            attributes: vec![attributes; self.triangles.len()],
+        }
+    }
 }
 
 impl Body {

@@ -10,12 +10,9 @@ use super::placement::Placement;
 use super::trees::levels;
 use super::watertight::{BUNCH, point_on_edges, towards};
 use super::{Finding, Plan, Random, Test, bodies};
-use crate::geometry::{Ray, TriangleAttributes};
+use crate::geometry::Ray;
 use crate::math::simd::SimdLevel;
-use crate::scene::built_in::assemble;
 use crate::scene::built_in::meshes::{Vertex, WorldMesh};
-use crate::scene::load::LoadOptions;
-use crate::scene::{Scene, SceneSource};
 use crate::surface::displaced::{
     DisplacedMesh, Displacement, MicroMesh, Reliefs, Search, SurfaceHit, Tracer,
 };
@@ -76,7 +73,7 @@ pub(super) fn tests(_plan: &Plan) -> Vec<Test> {
 
 /// How many rays get out, or are seen differently in some way.
 fn leaks(plan: &Plan, name: &str, shape: Shape, placement: Placement) -> Finding {
-    let scene = placed((shape.mesh)(), shape.name, placement);
+    let scene = placement.place((shape.mesh)(), shape.name);
     let map = bricks();
     let pyramid = HeightPyramid::new(&map, Wrap::Repeat);
     let amplitude = (AMPLITUDE * placement.scale * scene.normalization.scale) as f32;
@@ -192,37 +189,13 @@ fn bricks() -> HeightMap {
     HeightMap::from_image(&raw, Channel::Luma)
 }
 
-/// The mesh through the program's own door.
-fn placed(mut mesh: WorldMesh, name: &str, placement: Placement) -> Scene {
-    for vertex in &mut mesh.vertices {
-        vertex.position = placement.world(vertex.position);
-    }
-    let options = LoadOptions {
-        normalize: placement.normalize,
-        ..LoadOptions::default()
-    };
-    let source = SceneSource::BuiltIn(name.to_owned());
-    assemble(name, source, &mesh, Vec::new(), &options)
-}
-
 /// Texture coordinates that follow from places: no seam anywhere, mirrored on the far half.
 fn sphere() -> WorldMesh {
-    let body = bodies::sphere(8);
-    let vertex = |&p: &DVec3| Vertex {
-        position: p,
-        normal: p.normalize_or(DVec3::Z),
-        uv: p.truncate() * 0.5,
-    };
-    let attributes = TriangleAttributes {
-        material: 0,
-        has_uv: true,
-        smooth: true,
-    };
-    WorldMesh {
-        vertices: body.vertices.iter().map(vertex).collect(),
-        attributes: vec![attributes; body.triangles.len()],
-        indices: body.triangles,
+    let mut mesh = bodies::sphere(8).mesh(true);
+    for vertex in &mut mesh.vertices {
+        vertex.uv *= 0.5;
     }
+    mesh
 }
 
 /// Whole turns of the map both ways, with a seam along each.

@@ -3,9 +3,9 @@
 use glam::{DVec3, Vec3};
 
 use super::bodies::Body;
-use crate::geometry::{Normalization, TriangleAttributes};
+use crate::geometry::Normalization;
 use crate::scene::built_in::assemble;
-use crate::scene::built_in::meshes::{Vertex, WorldMesh};
+use crate::scene::built_in::meshes::WorldMesh;
 use crate::scene::load::LoadOptions;
 use crate::scene::{Scene, SceneSource};
 
@@ -72,27 +72,20 @@ impl Placement {
 
     /// The body through the program's own door: normalised, rounded, with a tree. Flat-shaded unless `smooth`.
     pub fn scene(&self, body: &Body, smooth: bool) -> Scene {
-        let vertex = |&p: &DVec3| Vertex {
-            position: self.world(p),
-            normal: p.normalize_or(DVec3::Z),
-            uv: p.truncate(),
-        };
-        let attributes = TriangleAttributes {
-            material: 0,
-            has_uv: true,
-            smooth,
-        };
-        let mesh = WorldMesh {
-            vertices: body.vertices.iter().map(vertex).collect(),
-            indices: body.triangles.clone(),
-            attributes: vec![attributes; body.triangles.len()],
-        };
+        self.place(body.mesh(smooth), body.name)
+    }
+
+    /// The same of a mesh.
+    pub fn place(&self, mut mesh: WorldMesh, name: &str) -> Scene {
+        for vertex in &mut mesh.vertices {
+            vertex.position = self.world(vertex.position);
+        }
         let options = LoadOptions {
             normalize: self.normalize,
             ..LoadOptions::default()
         };
-        let source = SceneSource::BuiltIn(body.name.to_owned());
-        assemble(body.name, source, &mesh, Vec::new(), &options)
+        let source = SceneSource::BuiltIn(name.to_owned());
+        assemble(name, source, &mesh, Vec::new(), &options)
     }
 
     /// A point of the body as the tracer sees it.

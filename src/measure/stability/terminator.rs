@@ -9,13 +9,10 @@ use super::convex::{at_level, differing};
 use super::placement::Placement;
 use super::trees::levels;
 use super::{Finding, Plan, Test, bodies};
-use crate::geometry::TriangleAttributes;
 use crate::math::LinearRgb;
 use crate::render::{Picture, PixelRecord, Progressive, Recording, Records, Snapshot};
-use crate::scene::built_in::assemble;
 use crate::scene::built_in::meshes::{Vertex, WorldMesh};
-use crate::scene::load::LoadOptions;
-use crate::scene::{Background, Camera, RenderSettings, Scene, SceneSource, ShadingSettings};
+use crate::scene::{Background, Camera, RenderSettings, Scene, ShadingSettings};
 use crate::shading::{Falloff, Light, LightKind, Material};
 use crate::surface::mapping::{MappingSettings, Method};
 
@@ -109,11 +106,15 @@ fn dark(picture: &Picture, records: &Records, to_sun: DVec3) -> u64 {
 
 /// Lit pixels inside of a closed coarse shell, where no light gets in.
 fn enclosed(plan: &Plan, eye: f64) -> Finding {
-    let mut mesh = smooth_body(&bodies::sphere(4), 1.0);
+    let mut mesh = bodies::sphere(4).mesh(true);
     if eye > 1.0 {
-        mesh.append(smooth_body(&bodies::sphere(3), 3.0));
+        let mut around = bodies::sphere(3).mesh(true);
+        for vertex in &mut around.vertices {
+            vertex.position *= 3.0;
+        }
+        mesh.append(around);
     }
-    let scene = scene(&mesh);
+    let scene = Placement::PLAIN.place(mesh, "shells");
     let lamp = LightKind::Point {
         position: DVec3::new(-3.5, 1.0, 2.5),
         falloff: Falloff::None,
@@ -144,7 +145,7 @@ fn enclosed(plan: &Plan, eye: f64) -> Finding {
 fn flat_box(plan: &Plan) -> Finding {
     let mut mesh = box_of(1.0);
     mesh.append(box_of(3.0));
-    let scene = scene(&mesh);
+    let scene = Placement::PLAIN.place(mesh, "shells");
     let lamp = LightKind::Point {
         position: DVec3::new(-1.9, -0.5, 2.1),
         falloff: Falloff::None,
@@ -202,30 +203,6 @@ fn look(scene: &Scene, settings: &RenderSettings, side: u32) -> (Picture, Record
     });
     renderer.pass(&|| false);
     (renderer.picture(), renderer.records().unwrap_or_default())
-}
-
-fn scene(mesh: &WorldMesh) -> Scene {
-    let source = SceneSource::BuiltIn("shells".to_owned());
-    assemble("shells", source, mesh, Vec::new(), &LoadOptions::default())
-}
-
-/// A body with normals that point away from its middle.
-fn smooth_body(body: &bodies::Body, scale: f64) -> WorldMesh {
-    let vertex = |&p: &DVec3| Vertex {
-        position: p * scale,
-        normal: p.normalize_or(DVec3::Z),
-        uv: p.truncate(),
-    };
-    let attributes = TriangleAttributes {
-        material: 0,
-        has_uv: true,
-        smooth: true,
-    };
-    WorldMesh {
-        vertices: body.vertices.iter().map(vertex).collect(),
-        indices: body.triangles.clone(),
-        attributes: vec![attributes; body.triangles.len()],
-    }
 }
 
 /// A box about the origin whose vertices have the normals of their faces.
