@@ -109,8 +109,8 @@ impl Walk {
     };
 }
 
-/// No walk takes more steps, whatever the map.
-pub(super) const STEP_CAP: f64 = 4_194_304.0;
+/// No walk takes more steps, whatever the map: a hundredth of a second at the most.
+pub(super) const STEP_CAP: f64 = 1_048_576.0;
 
 /// Farther from the origin than this many texels nothing is looked for: cells could not be told apart.
 const FARTHEST: f64 = 1e12;
