@@ -139,6 +139,17 @@ impl SimdLevel {
     }
 }
 
+/// Whether `max` and `min` of these instructions give the second number where one is NaN or both are zeros, as
+/// `if a > b { a } else { b }` does. Those of x86 do; others take a comparison and a choice for that.
+#[inline(always)]
+pub(crate) fn second_wins<S: Simd>(simd: S) -> bool {
+    match simd.level() {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Sse4_2(_) | Level::Avx2(_) | Level::Avx512(_) => true,
+        _ => false,
+    }
+}
+
 /// Compiles a kernel once for every kind of token that a [`SimdLevel`] may hold.
 #[inline]
 fn launch(token: Level, kernel: impl Kernel) {

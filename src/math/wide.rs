@@ -5,7 +5,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 use super::real::{Bits, Mask, Real};
 use super::simd::{
     Bytes as _, ExtractToken as _, Select as _, Simd, SimdBase, SimdCvtFloat as _, SimdFloat,
-    SimdMask,
+    SimdMask, second_wins,
 };
 
 /// Most lanes that a vector of any machine has.
@@ -105,6 +105,22 @@ impl<S: Simd> Real for Wide<S> {
     #[inline(always)]
     fn splat(self, x: f32) -> Self {
         Self::new(self.0.token(), x)
+    }
+    #[inline(always)]
+    fn larger(self, o: Self) -> Self {
+        if second_wins(self.0.token()) {
+            Self(self.0.max(o.0))
+        } else {
+            Self::select(o.lt(self), self, o)
+        }
+    }
+    #[inline(always)]
+    fn smaller(self, o: Self) -> Self {
+        if second_wins(self.0.token()) {
+            Self(self.0.min(o.0))
+        } else {
+            Self::select(self.lt(o), self, o)
+        }
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -285,6 +301,61 @@ fn gather_lanes<const K: usize, const N: usize>(
             let values = fetch(lanes[k][lane]);
             for n in 0..N {
                 found[k][n][lane] = values[n];
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::simd::{Kernel, SimdLevel};
+
+    const NUMBERS: [f32; 8] = [
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::NAN,
+        f32::MIN_POSITIVE,
+    ];
+
+    /// Bits of the larger and of the smaller of each pair, by one level.
+    #[derive(Default)]
+    struct Extremes(Vec<[u32; 2]>);
+
+    impl Kernel for &mut Extremes {
+        #[inline(always)]
+        fn run<S: Simd>(self, simd: S) {
+            for a in NUMBERS {
+                for b in NUMBERS {
+                    let (wide_a, wide_b) = (Wide::new(simd, a), Wide::new(simd, b));
+                    let mut found = [0; 2];
+                    let both = [wide_a.larger(wide_b), wide_a.smaller(wide_b)];
+                    for (found, wide) in found.iter_mut().zip(both) {
+                        let mut lanes = [0.0; MAX_LANES];
+                        wide.0.store_slice(&mut lanes[..S::f32s::LEN]);
+                        *found = lanes[0].to_bits();
+                    }
+                    self.0.push(found);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn extremes_are_the_same_bits_at_every_level() {
+        let pairs = NUMBERS.into_iter().flat_map(|a| NUMBERS.map(|b| (a, b)));
+        let expected: Vec<_> = pairs
+            .map(|(a, b)| [if a > b { a } else { b }, if a < b { a } else { b }].map(f32::to_bits))
+            .collect();
+        for level in SimdLevel::ALL {
+            let mut found = Extremes::default();
+            if level.is_available() {
+                level.run_or_plain(&mut found);
+                assert_eq!(found.0, expected, "{level}");
             }
         }
     }

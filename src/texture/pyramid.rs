@@ -122,11 +122,15 @@ impl Level {
     #[inline(always)]
     #[must_use]
     pub fn extremes<T: Copy + PartialOrd>(&self, numbers: &[T], at: usize) -> [T; 2] {
-        let [low, high] = [numbers[at], numbers[at + 1]];
+        let pair = |at: usize| {
+            let pair = &numbers[at..at + 2];
+            [pair[0], pair[1]]
+        };
+        let [low, high] = pair(at);
         if self.below == 0 {
             return [low, high];
         }
-        let [c, d] = [numbers[at + self.below], numbers[at + self.below + 1]];
+        let [c, d] = pair(at + self.below);
         extremes([[low; 2], [high; 2], [c; 2], [d; 2]].into_iter())
     }
 }

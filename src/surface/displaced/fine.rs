@@ -8,7 +8,7 @@
 use glam::{Vec2, Vec3};
 
 use super::charts::Shape;
-use super::local::LocalRay;
+use super::local::{LocalFrame, LocalRay};
 use super::pieces::{Piece, WHOLE};
 use super::trace::SurfaceHit;
 use super::{Displacement, Reliefs, seams};
@@ -86,6 +86,21 @@ const fn grid() -> [[i32; 2]; VERTICES] {
     places
 }
 
+/// The same, `[axis][vertex]`. The place that is left over repeats the last vertex.
+const GRID_ROWS: [Row; 2] = grid_rows();
+
+const fn grid_rows() -> [Row; 2] {
+    let mut rows = [Row::splat(0.0); 2];
+    let mut i = 0;
+    while i < PARTS {
+        let [a, b] = GRID[if i < VERTICES { i } else { VERTICES - 1 }];
+        rows[0].0[i] = a as f32;
+        rows[1].0[i] = b as f32;
+        i += 1;
+    }
+    rows
+}
+
 /// Index in [`GRID`].
 const fn vertex(a: i32, b: i32) -> usize {
     (a + b * 5 - b * (b - 1) / 2) as usize
@@ -122,6 +137,8 @@ pub struct Patch<'a, 'm> {
     /// Weights of the triangle's second and third corner at the piece's first, and their changes to its others.
     frame: [[f32; 2]; 3],
     cut: Cut,
+    /// Smallest and largest displacement of the piece.
+    range: [f32; 2],
 }
 
 /// How a piece is cut up.
@@ -198,7 +215,13 @@ impl<'a, 'm> Patch<'a, 'm> {
             uv: order.map(|k| mesh.uvs[vertices[k] as usize]),
             frame: [c0, way(c1), way(c2)],
             cut,
+            range: displacement.ranges[piece as usize],
         })
+    }
+
+    /// Its piece.
+    pub const fn piece(&self) -> u32 {
+        self.piece
     }
 
     /// Weights of the triangle's corners at a place in the piece, given as shares of the ways to its second and third
@@ -242,16 +265,14 @@ impl<'a, 'm> Patch<'a, 'm> {
         [low, high]
     }
 
-    /// The ray in the piece's own coordinates.
-    pub fn local_ray(&self, ray: &FineRay) -> LocalRay {
-        let [p, n] = [self.p, self.n].map(|corners| {
-            let [c0, c1, c2] = corners.map(|c| c.as_dvec3());
-            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|place: [f32; 2]| {
-                let [w0, w1, w2] = self.weights(place).map(f64::from);
-                c0 * w0 + c1 * w1 + c2 * w2
-            })
-        });
-        LocalRay::new(ray, p, n)
+    /// The piece's own coordinates.
+    pub fn local_frame(&self) -> LocalFrame {
+        let at = |[c0, c1, c2]: [Vec3; 3], place: [f32; 2]| {
+            let [w0, w1, w2] = self.weights(place).map(f64::from);
+            c0.as_dvec3() * w0 + c1.as_dvec3() * w1 + c2.as_dvec3() * w2
+        };
+        let corners = |of| [at(of, [0.0, 0.0]), at(of, [1.0, 0.0]), at(of, [0.0, 1.0])];
+        LocalFrame::new(corners(self.p), corners(self.n))
     }
 
     /// Texture coordinate at weights of the triangle's corners.
@@ -325,20 +346,21 @@ impl<'a, 'm> Patch<'a, 'm> {
     /// Positions of the vertices of a part with four segments.
     #[inline(always)]
     fn leaf_points<S: Simd>(&self, simd: S, door: Door<'_, '_>, [a0, b0, s]: [i32; 3]) -> [Row; 3] {
-        let quarter = s / 4;
+        // Whole numbers below 2²⁴ and powers of two: nothing is rounded.
         let per_segment = self.per_segment();
+        let quarter = (s / 4) as f32 * per_segment;
+        let (a0, b0) = (a0 as f32 * per_segment, b0 as f32 * per_segment);
         let mut places = [Row::splat(0.0); 2];
-        for (i, [a, b]) in GRID.into_iter().enumerate() {
-            places[0].0[i] = (a0 + a * quarter) as f32 * per_segment;
-            places[1].0[i] = (b0 + b * quarter) as f32 * per_segment;
-        }
-        // The place that is left over repeats the last vertex.
-        for row in &mut places {
-            row.0[VERTICES] = row.0[VERTICES - 1];
-        }
         let mut points = [Row::splat(0.0); 3];
         for group in 0..PARTS / S::f32s::LEN {
-            let w = self.weights([places[0].get(simd, group), places[1].get(simd, group)]);
+            let [a, b] = &GRID_ROWS;
+            let place = [
+                a.get(simd, group) * quarter + a0,
+                b.get(simd, group) * quarter + b0,
+            ];
+            places[0].set(group, place[0]);
+            places[1].set(group, place[1]);
+            let w = self.weights(place);
             let d = self.field.height.displacement(self.uv_at(w));
             for (axis, row) in points.iter_mut().enumerate() {
                 let p = sum(w, self.p.map(|p| p[axis]));
@@ -494,12 +516,16 @@ impl<'a, 'm> Meeting<'a, 'm> {
     pub fn meet<S: Simd>(
         &mut self,
         simd: S,
-        patch: &Patch<'_, '_>,
+        (patch, frame): &(Patch<'_, '_>, LocalFrame),
         ray: &FineRay,
         (mut best, any): (Best, bool),
     ) -> Best {
         let (door, stack) = (self.door, &mut self.stack);
-        let local = patch.local_ray(ray);
+        let local = LocalRay::new(ray, frame);
+        // Half of the pieces whose boxes are met are flown over.
+        if local.meets([0.0, 0.0, 1.0], patch.range, best.t).1 {
+            return best;
+        }
         let mut depth = start(patch.cut, stack);
         while depth > 0 {
             depth -= 1;

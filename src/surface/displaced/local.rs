@@ -20,6 +20,43 @@ const AXES: usize = 4;
 /// Beyond this nothing can be said about a piece: its normals lie in its plane, or it has no area.
 const FAR: f64 = 1e12;
 
+/// The coordinates of a piece.
+#[derive(Debug, Clone, Copy)]
+pub struct LocalFrame {
+    /// The piece's first corner.
+    p0: DVec3,
+    /// What each coordinate changes by along the axes of space, and the sum of the magnitudes.
+    rows: [DVec3; AXES],
+    sizes: [f64; AXES],
+    /// What `n` differs from `N` by in each axis: at the piece's first corner, and its change to the others.
+    lean: [[f32; 3]; AXES],
+}
+
+impl LocalFrame {
+    /// `p` and `n` are the piece's corners and the displacement normals there.
+    pub fn new([p0, p1, p2]: [DVec3; 3], [n0, n1, n2]: [DVec3; 3]) -> Self {
+        let middle = (n0 + n1 + n2) / 3.0;
+        let to_local = DMat3::from_cols(p1 - p0, p2 - p0, middle).inverse();
+        let (a, b, z) = (to_local.row(0), to_local.row(1), to_local.row(2));
+        let rows = [a, b, a + b, z];
+        let lean = |row: DVec3| {
+            let (l0, l1, l2) = (
+                row.dot(n0 - middle),
+                row.dot(n1 - middle),
+                row.dot(n2 - middle),
+            );
+            [l0 as f32, (l1 - l0) as f32, (l2 - l0) as f32]
+        };
+        let size = |row: DVec3| row.abs().element_sum();
+        Self {
+            p0,
+            sizes: [size(a), size(b), size(a + b), size(z)],
+            lean: [lean(a), lean(b), lean(a + b), lean(z)],
+            rows,
+        }
+    }
+}
+
 /// A ray over one piece. Distances are those in space.
 #[derive(Debug, Clone, Copy)]
 pub struct LocalRay {
@@ -30,20 +67,16 @@ pub struct LocalRay {
     inv_rate: [f32; AXES],
     /// What rounding may move a point by, here and where micro-triangles are made and tested.
     margin: [f32; AXES],
-    /// What `n` differs from `N` by in each axis: at the piece's first corner, and its change to the others.
+    /// See [`LocalFrame`].
     lean: [[f32; 3]; AXES],
 }
 
 impl LocalRay {
-    /// `p` and `n` are the piece's corners and the displacement normals there.
-    pub fn new(ray: &FineRay, p: [DVec3; 3], n: [DVec3; 3]) -> Self {
-        let middle = (n[0] + n[1] + n[2]) / 3.0;
-        let to_local = DMat3::from_cols(p[1] - p[0], p[2] - p[0], middle).inverse();
-        let rows = [to_local.row(0), to_local.row(1), to_local.row(2)];
-        let rows = [rows[0], rows[1], rows[0] + rows[1], rows[2]];
+    /// The ray in the coordinates of a piece.
+    pub fn new(ray: &FineRay, frame: &LocalFrame) -> Self {
         let (origin, dir) = (ray.ray.origin.as_dvec3(), ray.ray.dir.as_dvec3());
-        let t0 = ((p[0] - origin).dot(dir) as f32).max(0.0);
-        let start = origin + dir * f64::from(t0) - p[0];
+        let t0 = ((frame.p0 - origin).dot(dir) as f32).max(0.0);
+        let start = origin + dir * f64::from(t0) - frame.p0;
         let reach = f64::from(ray.reach);
         let mut local = Self {
             t0,
@@ -52,9 +85,10 @@ impl LocalRay {
             margin: [0.0; AXES],
             lean: [[0.0; 3]; AXES],
         };
-        for (axis, row) in rows.into_iter().enumerate() {
+        for axis in 0..AXES {
+            let row = frame.rows[axis];
             let (from, rate) = (row.dot(start), row.dot(dir));
-            let size = row.abs().element_sum() * reach;
+            let size = frame.sizes[axis] * reach;
             // Not for NaN either.
             if !(size < FAR && from.abs() < FAR) {
                 continue;
@@ -64,15 +98,14 @@ impl LocalRay {
             local.from[axis] = from as f32;
             // A little off where the ray does not change: it goes by in no distance that can be. A share of what the
             // rate can be at all, or large pieces, along which everything changes slowly, would be taken for such.
-            let least = 1e-9 * row.abs().element_sum();
+            let least = 1e-9 * frame.sizes[axis];
             let rate = if rate.abs() < least {
                 least.copysign(rate)
             } else {
                 rate
             };
             local.inv_rate[axis] = (1.0 / rate) as f32;
-            let [l0, l1, l2] = n.map(|n| row.dot(n - middle));
-            local.lean[axis] = [l0, l1 - l0, l2 - l0].map(|l| l as f32);
+            local.lean[axis] = frame.lean[axis];
         }
         local
     }

@@ -78,6 +78,8 @@ pub struct Displacement {
     normals: Vec<Vec3>,
     seams: Seams,
     tree: BoxTree,
+    /// Smallest and largest displacement of each piece.
+    ranges: Vec<[f32; 2]>,
     /// Whether the mesh has other triangles, too.
     has_plain: bool,
     /// All micro-triangles, once they were asked for.
@@ -105,11 +107,11 @@ impl Displacement {
             (&welded.places, &seams),
             &mut normals,
         );
-        let boxes: Vec<Aabb> = pieces
+        let (boxes, ranges): (Vec<Aabb>, Vec<[f32; 2]>) = pieces
             .par_iter()
             .with_min_len(FEW)
             .map(|piece| prism(mesh, reliefs, &normals, piece))
-            .collect();
+            .unzip();
         let flat = pieces.iter().filter(|piece| piece.shape == Shape::Flat);
         let flat = flat.count();
         Self {
@@ -118,6 +120,7 @@ impl Displacement {
             normals,
             seams,
             tree: BoxTree::build(&boxes),
+            ranges,
             has_plain: prims.len() < mesh.len(),
             micro: Mutex::default(),
         }
@@ -191,16 +194,22 @@ impl Displacement {
     pub fn bytes(&self) -> usize {
         self.tree.bytes()
             + size_of_val(self.pieces.as_slice())
+            + size_of_val(self.ranges.as_slice())
             + size_of_val(self.normals.as_slice())
     }
 }
 
 /// Box around everything that a piece's relief can reach: `p + d·n` over a triangle lies in the hull of
-/// its corners at the smallest and largest `d`, because it is linear in each.
-fn prism(mesh: &TriangleMesh, reliefs: &Reliefs<'_, '_>, normals: &[Vec3], piece: &Piece) -> Aabb {
+/// its corners at the smallest and largest `d`, because it is linear in each. And these `d`, a little widened.
+fn prism(
+    mesh: &TriangleMesh,
+    reliefs: &Reliefs<'_, '_>,
+    normals: &[Vec3],
+    piece: &Piece,
+) -> (Aabb, [f32; 2]) {
     let prim = piece.prim;
     let Some(field) = reliefs.on(mesh, prim) else {
-        return Aabb::EMPTY;
+        return (Aabb::EMPTY, [0.0; 2]);
     };
     let vertices = mesh.indices[prim as usize];
     let order = piece.order.map(|k| vertices[usize::from(k)] as usize);
@@ -226,10 +235,13 @@ fn prism(mesh: &TriangleMesh, reliefs: &Reliefs<'_, '_>, normals: &[Vec3], piece
     let hull = Aabb::from_points(points);
     // A few roundings of the points within.
     let margin = hull.min.abs().max(hull.max.abs()) * (16.0 * f32::EPSILON);
-    Aabb {
+    let hull = Aabb {
         min: hull.min - margin,
         max: hull.max + margin,
-    }
+    };
+    let [low, high] = ends;
+    let slack = low.abs().max(high.abs()).max(field.height.offset.abs()) * 2e-6;
+    (hull, [low - slack, high + slack])
 }
 
 /// The displacement of a scene that was asked for last, so that passes and settings that do not change it

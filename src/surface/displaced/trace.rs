@@ -5,6 +5,7 @@ use glam::Vec3;
 use super::charts::Shape;
 use super::fine::{Best, FineCounters, FineRay, Meeting, Patch};
 use super::flat::FlatPrism;
+use super::local::LocalFrame;
 use super::micro::MicroMesh;
 use super::pieces::Piece;
 use super::{Displacement, Reliefs};
@@ -18,8 +19,9 @@ use crate::surface::mapping::relief::{ReliefRay, Walk};
 /// Rays that are traced without asking whether anybody wants them still: a few milliseconds, at the worst.
 const RAYS_BETWEEN_STOPS: usize = 16;
 
-/// Prisms of flat reliefs that are kept at hand.
+/// Prisms of flat reliefs that are kept at hand, and pieces that are cut up.
 const PRISMS: usize = 16;
+const PATCHES: usize = 32;
 
 /// A point of a displaced surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -311,6 +313,7 @@ impl Kernel for Visit<'_, '_, '_> {
         } = self.mesh;
         // Rays nearby meet the same few triangles by turns.
         let mut prisms: [Option<(u32, FlatPrism<'_, '_>)>; PRISMS] = [None; PRISMS];
+        let mut patches: [Option<(Patch<'_, '_>, LocalFrame)>; PATCHES] = [None; PATCHES];
         let Tracer {
             asked, rays, jobs, ..
         } = self.tracer;
@@ -350,8 +353,12 @@ impl Kernel for Visit<'_, '_, '_> {
                     Shape::Fine(_) => {
                         let ray = fine_ray
                             .get_or_insert_with(|| FineRay::new(&ray, displacement.reach()));
-                        if let Some(patch) = Patch::new(mesh, door, i) {
-                            asked.best = meeting.meet(simd, &patch, ray, (asked.best, any));
+                        let kept = &mut patches[i as usize % PATCHES];
+                        if kept.is_none_or(|(patch, _)| patch.piece() != i) {
+                            *kept = Patch::new(mesh, door, i).map(|p| (p, p.local_frame()));
+                        }
+                        if let Some(patch) = kept {
+                            asked.best = meeting.meet(simd, patch, ray, (asked.best, any));
                         }
                     }
                 }
