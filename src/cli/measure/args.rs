@@ -51,7 +51,7 @@ pub(in crate::cli) struct MeasureArgs {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
     /// Samples per pixel of a picture; its reference has twice as many [default: 64, or 16 with --quick]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 16))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1 << 16))]
     pub samples: Option<u32>,
     /// Frames that are timed, after one that warms up [default: 7, or 5 with --quick]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]

@@ -15,6 +15,7 @@
 mod advice;
 mod chart;
 mod depths;
+mod doubt;
 mod facet;
 mod geometric;
 mod glance;
@@ -38,6 +39,7 @@ mod variant;
 
 pub use advice::{Advice, Measured, Question, advise};
 pub use chart::short;
+pub use doubt::PictureDoubt;
 pub use geometric::{outline_agreement, quantile};
 pub use glance::{Glance, GlancePoint, glance};
 pub use merge::{MergeError, merge};

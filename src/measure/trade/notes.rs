@@ -27,7 +27,7 @@ impl Record {
         let limited = self.cells.iter().filter(|c| c.limited_by_noise).count();
         if limited > 0 {
             notes.push(format!(
-                "The pictures of {limited} of {} cells differ from the reference by less than ten times what its own halves do; their figures say “at most”.",
+                "Of the pictures, {limited} of {} have a figure that is less than ten times what the halves of their samples differ by; more samples would tell it (`*`).",
                 self.cells.len()
             ));
         }

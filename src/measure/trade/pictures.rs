@@ -1,13 +1,10 @@
-//! Pictures of methods against a reference that knows its own error.
+//! Pictures of methods against a reference, from the same samples, with what either half of these says.
 
-use super::PictureErrors;
+use super::{PictureDoubt, PictureErrors};
 use crate::math::LinearRgb;
 use crate::measure::flip::{PIXELS_PER_DEGREE, flip};
 use crate::measure::metrics::distance;
 use crate::render::{PassEnd, Picture, Progressive, Snapshot};
-
-/// Errors below this many times the reference's own are limited by its noise.
-const CLEAR_OF_NOISE: f64 = 10.0;
 
 /// The true picture of a view.
 pub struct Reference {
@@ -15,6 +12,46 @@ pub struct Reference {
     pub picture: Picture,
     /// How far its halves, from samples of their own, are from the whole.
     pub noise: PictureErrors,
+    /// From the samples that methods are compared by: its own first half.
+    sampled: Halved,
+}
+
+/// A picture, and the two that either half of its samples make.
+struct Halved {
+    whole: Picture,
+    halves: [Picture; 2],
+}
+
+impl Halved {
+    /// `first` is made of the first half of the samples.
+    fn new(whole: Picture, first: Picture) -> Self {
+        let second = Picture {
+            pixels: whole
+                .pixels
+                .iter()
+                .zip(&first.pixels)
+                .map(|(&whole, &first)| rest(whole, first))
+                .collect(),
+            ..first
+        };
+        Self {
+            whole,
+            halves: [first, second],
+        }
+    }
+
+    /// How far the halves are from the whole.
+    fn noise(&self) -> PictureErrors {
+        let [a, b] = self.halves.each_ref();
+        PictureErrors::worse(errors(a, &self.whole).0, errors(b, &self.whole).0)
+    }
+
+    /// How far it is from another of the same samples, what halves of the samples make of that, and the FLIP map.
+    fn against(&self, other: &Self) -> (PictureErrors, PictureDoubt, Vec<f32>) {
+        let (whole, flip_map) = errors(&self.whole, &other.whole);
+        let halves = [0, 1].map(|i| errors(&self.halves[i], &other.halves[i]).0);
+        (whole, PictureDoubt::of(&whole, &halves), flip_map)
+    }
 }
 
 /// Renders so many samples on; `false` if it was stopped.
@@ -37,10 +74,11 @@ fn start(renderer: &mut Progressive, snapshot: &Snapshot, samples: u32) {
 }
 
 impl Reference {
-    /// Renders it with `2 · half` samples per pixel; `None` if it was stopped.
+    /// Renders it with `4 · half` samples per pixel, the first `2 · half` of them those of the methods' pictures;
+    /// `None` if it was stopped.
     ///
-    /// The first half of the samples and the second are sets of their own, each as evenly spread as the whole, so
-    /// what they disagree about is what the whole does not know yet.
+    /// Either half of these, and either half of all, is a set of its own, as evenly spread as the whole: what the
+    /// two disagree about is what the whole does not know yet.
     #[must_use]
     pub fn render(
         renderer: &mut Progressive,
@@ -48,55 +86,50 @@ impl Reference {
         half: u32,
         stop: &(dyn Fn() -> bool + Sync),
     ) -> Option<Self> {
-        start(renderer, snapshot, 2 * half);
-        let first = samples_on(renderer, half, stop).then(|| renderer.picture())?;
-        let picture = samples_on(renderer, half, stop).then(|| renderer.picture())?;
-        let second = Picture {
-            pixels: picture
-                .pixels
-                .iter()
-                .zip(&first.pixels)
-                .map(|(&whole, &first)| rest(whole, first))
-                .collect(),
-            ..first
-        };
-        let halves = [&first, &second].map(|half| errors(half, &picture).0);
+        start(renderer, snapshot, 4 * half);
+        let mut next = |count| samples_on(renderer, count, stop).then(|| renderer.picture());
+        let [quarter, sampled, picture] = [next(half)?, next(half)?, next(2 * half)?];
+        let all = Halved::new(picture, sampled.clone());
         Some(Self {
-            noise: PictureErrors::worse(halves[0], halves[1]),
-            picture,
+            noise: all.noise(),
+            picture: all.whole,
+            sampled: Halved::new(sampled, quarter),
         })
     }
 
-    /// The picture of a method from `samples` per pixel, with its errors. `on_the_way` also asks for the FLIP after
-    /// 1, 2, 4, … samples.
+    /// The picture of a method from `2 · half` samples per pixel, with its errors. `on_the_way` also asks for the
+    /// FLIP after 1, 2, 4, … samples, against all samples of the reference.
     #[must_use]
     pub fn compare(
         &self,
         renderer: &mut Progressive,
         snapshot: &Snapshot,
-        samples: u32,
+        half: u32,
         on_the_way: bool,
     ) -> Compared {
-        start(renderer, snapshot, samples);
+        start(renderer, snapshot, 2 * half);
         let mut flip_by_samples = Vec::new();
         let mut next = 1;
+        let mut first = None;
         while !renderer.is_converged() {
             renderer.pass(&|| false);
-            if on_the_way && renderer.samples() == next && next < samples {
+            if renderer.samples() == half {
+                first = Some(renderer.picture());
+            }
+            if on_the_way && (renderer.samples() == next || renderer.is_converged()) {
                 flip_by_samples.push(mean(&flip_of(&renderer.picture(), &self.picture)));
                 next *= 2;
             }
         }
-        let picture = renderer.picture();
-        let (errors, flip_map) = errors(&picture, &self.picture);
-        if on_the_way {
-            flip_by_samples.push(errors.flip);
-        }
+        let whole = renderer.picture();
+        let first = first.unwrap_or_else(|| whole.clone());
+        let picture = Halved::new(whole, first);
+        let (errors, doubt, flip_map) = picture.against(&self.sampled);
         Compared {
-            limited_by_noise: errors.is_limited_by(&self.noise),
             errors,
+            doubt,
             flip_by_samples,
-            picture,
+            picture: picture.whole,
             flip_map,
         }
     }
@@ -106,8 +139,8 @@ impl Reference {
 pub struct Compared {
     /// How far it is.
     pub errors: PictureErrors,
-    /// Whether the reference's noise shows in that.
-    pub limited_by_noise: bool,
+    /// How far that is from what either half of the samples says.
+    pub doubt: PictureDoubt,
     /// After 1, 2, 4, … and all samples; empty if nobody asked.
     pub flip_by_samples: Vec<f64>,
     /// The picture.
@@ -152,36 +185,6 @@ fn errors(a: &Picture, b: &Picture) -> (PictureErrors, Vec<f32>) {
     (errors, map)
 }
 
-impl PictureErrors {
-    /// The worse of two in each figure.
-    fn worse(a: Self, b: Self) -> Self {
-        Self {
-            linear_rmse: a.linear_rmse.max(b.linear_rmse),
-            psnr_db: match (a.psnr_db, b.psnr_db) {
-                (Some(a), Some(b)) => Some(a.min(b)),
-                (a, b) => a.or(b),
-            },
-            ssim: a.ssim.min(b.ssim),
-            flip: a.flip.max(b.flip),
-        }
-    }
-
-    /// Whether one of the errors is less than ten times what the reference does not know of itself. Decibels follow
-    /// the root mean square: ten times are 20 dB.
-    fn is_limited_by(&self, noise: &Self) -> bool {
-        let db = 20.0 * CLEAR_OF_NOISE.log10();
-        let psnr_is_limited = match (self.psnr_db, noise.psnr_db) {
-            (_, None) => false,
-            (None, Some(_)) => true,
-            (Some(own), Some(noise)) => own + db > noise,
-        };
-        self.linear_rmse < CLEAR_OF_NOISE * noise.linear_rmse
-            || self.flip < CLEAR_OF_NOISE * noise.flip
-            || 1.0 - self.ssim < CLEAR_OF_NOISE * (1.0 - noise.ssim)
-            || psnr_is_limited
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -196,8 +199,29 @@ mod tests {
 
     #[test]
     fn halves_of_known_pictures() {
-        let [whole, first] = [LinearRgb::gray(0.5), LinearRgb::gray(0.75)];
-        assert_eq!(rest(whole, first), LinearRgb::gray(0.25));
+        let halved = Halved::new(gray(&[0.5, 0.25]), gray(&[0.75, 0.25]));
+        assert_eq!(halved.halves[1].pixels, gray(&[0.25, 0.25]).pixels);
+        let off = (0.25_f64 * 0.25 / 2.0).sqrt();
+        assert!((halved.noise().linear_rmse - off).abs() < 1e-7);
+    }
+
+    #[test]
+    fn what_both_pictures_share_is_no_doubt() {
+        // The samples differ, but of both pictures alike.
+        let a = Halved::new(gray(&[0.5, 0.25]), gray(&[0.75, 0.25]));
+        let b = Halved::new(gray(&[0.375, 0.125]), gray(&[0.625, 0.125]));
+        let (errors, doubt, _) = a.against(&b);
+        assert_eq!((errors.linear_rmse, doubt.linear_rmse), (0.125, 0.0));
+        let (same, none, map) = a.against(&a);
+        assert_eq!(
+            (same.linear_rmse, same.psnr_db, map),
+            (0.0, None, vec![0.0; 2])
+        );
+        assert_eq!(none, PictureDoubt::default());
+        // Here only one half sees a difference.
+        let c = Halved::new(gray(&[0.5, 0.125]), gray(&[0.75, 0.25]));
+        let (errors, doubt, _) = a.against(&c);
+        assert!(doubt.linear_rmse >= 0.99 * errors.linear_rmse, "{doubt:?}");
     }
 
     #[test]
@@ -211,45 +235,5 @@ mod tests {
         let (other, _) = errors(&gray(&[0.0, 0.0]), &gray(&[1.0, 1.0]));
         assert_eq!(other.linear_rmse, 1.0);
         assert!(other.flip > 0.9 && other.psnr_db.is_some_and(|db| db.abs() < 1e-4));
-    }
-
-    #[test]
-    fn an_error_is_clear_of_noise_from_ten_times_on() {
-        let noise = PictureErrors {
-            linear_rmse: 0.001,
-            psnr_db: Some(60.0),
-            ssim: 0.999,
-            flip: 0.002,
-        };
-        let clear = PictureErrors {
-            linear_rmse: 0.011,
-            psnr_db: Some(39.0),
-            ssim: 0.98,
-            flip: 0.021,
-        };
-        assert!(!clear.is_limited_by(&noise));
-        let near = [
-            PictureErrors {
-                linear_rmse: 0.009,
-                ..clear
-            },
-            PictureErrors {
-                psnr_db: Some(41.0),
-                ..clear
-            },
-            PictureErrors {
-                psnr_db: None,
-                ..clear
-            },
-            PictureErrors {
-                ssim: 0.995,
-                ..clear
-            },
-            PictureErrors {
-                flip: 0.019,
-                ..clear
-            },
-        ];
-        assert!(near.iter().all(|near| near.is_limited_by(&noise)));
     }
 }

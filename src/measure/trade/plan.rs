@@ -31,7 +31,8 @@ pub struct Plan {
     pub rays: u32,
     /// Columns and rows of the pictures that are compared.
     pub size: [u32; 2],
-    /// Samples per pixel of every method's picture; the reference has twice as many.
+    /// Samples per pixel of every method's picture, at least 2, odd numbers rounded down; the reference has twice as
+    /// many.
     pub samples: u32,
     /// Columns and rows of the frames that are timed.
     pub timed_size: [u32; 2],
@@ -86,6 +87,12 @@ impl Plan {
             rounds: 5,
             ..Self::full()
         }
+    }
+
+    /// Samples per pixel in either half of a method's picture.
+    #[must_use]
+    pub fn half_samples(&self) -> u32 {
+        (self.samples / 2).max(1)
     }
 
     /// Every view, in order.

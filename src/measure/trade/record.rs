@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Plan, Shard, Variant};
+use super::{PictureDoubt, Plan, Shard, Variant};
 use crate::measure::bench::Spread;
 
 /// Changes whenever a file of an older program would be misread.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 
 /// A sweep, or a part of one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -105,8 +105,7 @@ pub struct ViewFacts {
     pub covered: f64,
     /// Rounding of the geometric truth, texels, largest.
     pub truth_doubt_texels: f64,
-    /// How far the halves of the reference picture are from the whole: errors below ten times these are limited by
-    /// the reference's noise.
+    /// How far the halves of the reference picture are from the whole.
     pub reference_noise: PictureErrors,
 }
 
@@ -125,9 +124,11 @@ pub struct Cell {
     pub variant: Variant,
     /// Where rays land.
     pub geometry: GeometricErrors,
-    /// How the picture looks.
+    /// How the picture looks, against that of the reference from the same samples.
     pub picture: PictureErrors,
-    /// Whether the picture's errors are less than ten times the reference's own.
+    /// What these samples leave open about that.
+    pub picture_doubt: PictureDoubt,
+    /// Whether one of the picture's errors is less than ten times the doubt about it.
     pub limited_by_noise: bool,
     /// Mean FLIP of the picture after 1, 2, 4, … samples per pixel; empty where it was not followed.
     pub flip_by_samples: Vec<f64>,

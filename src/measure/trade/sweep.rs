@@ -180,7 +180,7 @@ impl ViewWork<'_> {
         let frame = Frame::new(&exact);
         let sights = Pinhole::of(&frame).sights(self.plan.rays, self.seed());
         let truth = TrueView::new(&frame, self.subject.truth(), &sights);
-        let half = self.plan.samples;
+        let half = self.plan.half_samples();
         let Some(reference) = Reference::render(self.renderer, &exact, half, watch.stop) else {
             return;
         };
@@ -232,7 +232,12 @@ impl ViewWork<'_> {
             .subject
             .variant_snapshot(&self.seen, (&variant, bits), self.plan.size);
         let on_the_way = self.view.amplitude == 1.0 && bits == self.subject.depths()[0];
-        reference.compare(self.renderer, &snapshot, self.plan.samples, on_the_way)
+        reference.compare(
+            self.renderer,
+            &snapshot,
+            self.plan.half_samples(),
+            on_the_way,
+        )
     }
 
     fn cell(
@@ -249,7 +254,8 @@ impl ViewWork<'_> {
             variant,
             geometry,
             picture: compared.errors,
-            limited_by_noise: compared.limited_by_noise,
+            picture_doubt: compared.doubt,
+            limited_by_noise: compared.doubt.limits(&compared.errors),
             flip_by_samples: compared.flip_by_samples.clone(),
             cost: Cost::default(),
         }

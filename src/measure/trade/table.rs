@@ -14,7 +14,7 @@ fn maybe(value: Option<f64>) -> String {
 }
 
 /// Every column: units are in the names.
-const COLUMNS: [Column; 41] = [
+const COLUMNS: [Column; 45] = [
     ("view", |c| c.view.to_string()),
     ("angle_deg", |c| number(c.angle_deg)),
     ("amplitude_factor", |c| number(c.amplitude)),
@@ -44,6 +44,10 @@ const COLUMNS: [Column; 41] = [
     ("psnr_db", |c| maybe(c.picture.psnr_db)),
     ("ssim", |c| number(c.picture.ssim)),
     ("flip", |c| number(c.picture.flip)),
+    ("linear_rmse_doubt", |c| number(c.picture_doubt.linear_rmse)),
+    ("psnr_db_doubt", |c| number(c.picture_doubt.psnr_db)),
+    ("ssim_doubt", |c| number(c.picture_doubt.ssim)),
+    ("flip_doubt", |c| number(c.picture_doubt.flip)),
     ("limited_by_noise", |c| c.limited_by_noise.to_string()),
     ("look_ups_per_sample", |c| number(c.cost.look_ups)),
     ("steps_per_sample", |c| number(c.cost.steps)),

@@ -78,7 +78,7 @@ pub(super) fn all_methods(html: &mut String, record: &Record) {
     push(
         html,
         "<p><small>Amplitude and bits of the map's own. Two figures with a stroke: median and 95th percentile. \
-         Green: no other method is both cheaper and nearer in texels. *: less than ten times the reference's own error. \
+         Green: no other method is both cheaper and nearer in texels. *: less than ten times what the halves of the samples differ by. \
          In brackets: the fastest and the slowest frame.</small></p>",
     );
     let cells = usual_cells(record);
