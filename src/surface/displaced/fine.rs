@@ -7,6 +7,7 @@
 
 use glam::{Vec2, Vec3};
 
+use super::cells::PieceCells;
 use super::charts::Shape;
 use super::local::{LocalFrame, LocalRay};
 use super::pieces::{Piece, WHOLE};
@@ -139,6 +140,8 @@ pub struct Patch<'a, 'm> {
     cut: Cut,
     /// Smallest and largest displacement of the piece.
     range: [f32; 2],
+    /// Where it lies on the map, if within; seams are left to the places themselves.
+    cells: Option<PieceCells>,
 }
 
 /// How a piece is cut up.
@@ -205,7 +208,7 @@ impl<'a, 'm> Patch<'a, 'm> {
         let p = mesh.corners(prim);
         let [c0, c1, c2] = corners.map(|w| w.map(|w| f32::from(w) / f32::from(WHOLE)));
         let way = |c: [f32; 2]| [c[0] - c0[0], c[1] - c0[1]];
-        Some(Self {
+        let mut patch = Self {
             piece,
             prim,
             field,
@@ -216,7 +219,21 @@ impl<'a, 'm> Patch<'a, 'm> {
             frame: [c0, way(c1), way(c2)],
             cut,
             range: displacement.ranges[piece as usize],
-        })
+            cells: None,
+        };
+        if !cut.on_seam {
+            let uv = |place| patch.uv_in_doubles(place);
+            let corners = [uv([0.0, 0.0]), uv([1.0, 0.0]), uv([0.0, 1.0])];
+            patch.cells = PieceCells::new(field, corners);
+        }
+        Some(patch)
+    }
+
+    /// Texture coordinate at a place in the piece.
+    fn uv_in_doubles(&self, place: [f32; 2]) -> [f64; 2] {
+        let [w0, w1, w2] = self.weights(place).map(f64::from);
+        let [a, b, c] = self.uv.map(|uv| uv.as_dvec2());
+        (a * w0 + b * w1 + c * w2).to_array()
     }
 
     /// Its piece.
@@ -272,7 +289,8 @@ impl<'a, 'm> Patch<'a, 'm> {
             c0.as_dvec3() * w0 + c1.as_dvec3() * w1 + c2.as_dvec3() * w2
         };
         let corners = |of| [at(of, [0.0, 0.0]), at(of, [1.0, 0.0]), at(of, [0.0, 1.0])];
-        LocalFrame::new(corners(self.p), corners(self.n))
+        let [low, high] = self.range;
+        LocalFrame::new(corners(self.p), corners(self.n), low.abs().max(high.abs()))
     }
 
     /// Texture coordinate at weights of the triangle's corners.
@@ -523,7 +541,8 @@ impl<'a, 'm> Meeting<'a, 'm> {
         let (door, stack) = (self.door, &mut self.stack);
         let local = LocalRay::new(ray, frame);
         // Half of the pieces whose boxes are met are flown over.
-        if local.meets([0.0, 0.0, 1.0], patch.range, best.t).1 {
+        let whole = ([0.0, 0.0, 1.0], 1.0);
+        if local.meets(whole, patch.range, best.t).1 {
             return best;
         }
         let mut depth = start(patch.cut, stack);
@@ -553,8 +572,12 @@ impl<'a, 'm> Meeting<'a, 'm> {
                     b.get(simd, group) * per_quarter + b0,
                     s.get(simd, group) * per_quarter,
                 ];
-                let range = patch.ranges(self.seam_range, places);
-                let (entry, misses) = local.meets(places, range, best.t);
+                let size = per_quarter.abs();
+                let range = match &patch.cells {
+                    Some(cells) => cells.ranges(patch.field, places, size),
+                    None => patch.ranges(self.seam_range, places),
+                };
+                let (entry, misses) = local.meets((places, size), range, best.t);
                 near.set(group, entry);
                 met |= (!misses).0.to_bitmask() << (group * S::f32s::LEN);
             }

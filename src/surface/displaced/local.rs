@@ -28,32 +28,39 @@ pub struct LocalFrame {
     /// What each coordinate changes by along the axes of space, and the sum of the magnitudes.
     rows: [DVec3; AXES],
     sizes: [f64; AXES],
-    /// What `n` differs from `N` by in each axis: at the piece's first corner, and its change to the others.
+    /// What displacement moves a point by in each axis, per unit: at the piece's first corner, and its change to the
+    /// others. In the last axis it is displacement itself and a little.
     lean: [[f32; 3]; AXES],
+    /// The most that displacement moves points of the piece by.
+    moved: [f64; AXES],
 }
 
 impl LocalFrame {
-    /// `p` and `n` are the piece's corners and the displacement normals there.
-    pub fn new([p0, p1, p2]: [DVec3; 3], [n0, n1, n2]: [DVec3; 3]) -> Self {
+    /// `p` and `n` are the piece's corners and the displacement normals there, `most` is the largest magnitude of its
+    /// displacements.
+    pub fn new([p0, p1, p2]: [DVec3; 3], [n0, n1, n2]: [DVec3; 3], most: f32) -> Self {
         let middle = (n0 + n1 + n2) / 3.0;
         let to_local = DMat3::from_cols(p1 - p0, p2 - p0, middle).inverse();
         let (a, b, z) = (to_local.row(0), to_local.row(1), to_local.row(2));
         let rows = [a, b, a + b, z];
-        let lean = |row: DVec3| {
-            let (l0, l1, l2) = (
-                row.dot(n0 - middle),
-                row.dot(n1 - middle),
-                row.dot(n2 - middle),
-            );
-            [l0 as f32, (l1 - l0) as f32, (l2 - l0) as f32]
-        };
-        let size = |row: DVec3| row.abs().element_sum();
-        Self {
+        // Next to nothing along the piece, next to 1 along its normal.
+        let mut frame = Self {
             p0,
-            sizes: [size(a), size(b), size(a + b), size(z)],
-            lean: [lean(a), lean(b), lean(a + b), lean(z)],
             rows,
+            sizes: [0.0; AXES],
+            lean: [[0.0; 3]; AXES],
+            moved: [0.0; AXES],
+        };
+        for (axis, row) in rows.into_iter().enumerate() {
+            let all = if axis == AXES - 1 { 1.0 } else { 0.0 };
+            let l0 = row.dot(n0 - middle) + all;
+            let l1 = row.dot(n1 - middle) + all;
+            let l2 = row.dot(n2 - middle) + all;
+            frame.sizes[axis] = row.abs().element_sum();
+            frame.lean[axis] = [l0 as f32, (l1 - l0) as f32, (l2 - l0) as f32];
+            frame.moved[axis] = (l0.abs() + l1.abs() + l2.abs()) * f64::from(most);
         }
+        frame
     }
 }
 
@@ -94,7 +101,8 @@ impl LocalRay {
                 continue;
             }
             // As in `RaySlabs`; what is rounded here is small beside it.
-            local.margin[axis] = (32.0 * HALF_ULP * (size + from.abs() + 1.0)) as f32;
+            let largest = size + from.abs() + frame.moved[axis] + 1.0;
+            local.margin[axis] = (32.0 * HALF_ULP * largest) as f32;
             local.from[axis] = from as f32;
             // A little off where the ray does not change: it goes by in no distance that can be. A share of what the
             // rate can be at all, or large pieces, along which everything changes slowly, would be taken for such.
@@ -111,46 +119,43 @@ impl LocalRay {
     }
 
     /// Where the ray enters the bounds of parts with displacements in a range, and whether it misses them before
-    /// `t_max`. Parts are given by anchor and signed size as shares of the piece's edges.
+    /// `t_max`. Parts are given by anchor and signed size as shares of the piece's edges; `size` is the magnitude of
+    /// all of these.
     #[inline(always)]
     pub fn meets<F: Real>(
         &self,
-        [a, b, s]: [F; 3],
+        ([a, b, s], size): ([F; 3], f32),
         [low, high]: [F; 2],
         t_max: f32,
     ) -> (F, F::Mask) {
         let zero = a.splat(0.0);
         let mut first = zero.splat(-self.t0);
         let mut last = zero.splat(t_max - self.t0);
-        let sum = a + b;
+        // Displacements by their middle, and by how far they are from it and from 0 at the most.
+        let middle = (low + high) * 0.5;
+        let spread = (high - low) * 0.5;
+        let most = middle.abs() + spread;
+        let half = s * 0.5;
+        let (a_middle, b_middle) = (a + half, b + half);
+        let sum_middle = a_middle + b;
         for axis in 0..AXES {
-            let anchor = match axis {
-                0 => a,
-                1 => b,
-                2 => sum,
-                _ => zero,
+            let (place, half_size) = match axis {
+                0 => (a_middle, 0.5 * size),
+                1 => (b_middle, 0.5 * size),
+                2 => (sum_middle, 0.5 * size),
+                _ => (zero, 0.0),
             };
             let [l0, l1, l2] = self.lean[axis];
             let lean = a * l1 + b * l2 + l0;
-            let (x, y) = (s * l1, s * l2);
-            let least = lean + x.smaller(y).smaller(zero);
-            let most = lean + x.larger(y).larger(zero);
-            // In the last axis displacement itself comes to that.
-            let (least, most, size) = if axis == 3 {
-                (least + 1.0, most + 1.0, zero)
-            } else {
-                (least, most, s)
-            };
-            let (p, q) = (low * least, low * most);
-            let (r, t) = (high * least, high * most);
-            let down = p.smaller(q).smaller(r.smaller(t)) + size.smaller(zero);
-            let up = p.larger(q).larger(r.larger(t)) + size.larger(zero);
-            let (from, margin) = (self.from[axis], self.margin[axis]);
-            let down = (anchor + down - margin - from) * self.inv_rate[axis];
-            let up = (anchor + up + margin - from) * self.inv_rate[axis];
+            let lean_spread = size * l1.abs().max(l2.abs());
+            let centre = lean * middle + (place - self.from[axis]);
+            let reach =
+                lean.abs() * spread + (most * lean_spread + (half_size + self.margin[axis]));
+            let to_centre = centre * self.inv_rate[axis];
+            let across = reach * self.inv_rate[axis].abs();
             // NaN changes nothing: `larger` and `smaller` give the second then.
-            first = down.smaller(up).larger(first);
-            last = down.larger(up).smaller(last);
+            first = (to_centre - across).larger(first);
+            last = (to_centre + across).smaller(last);
         }
         (first + self.t0, first.gt(last))
     }

@@ -9,6 +9,7 @@
 //! - `flat`: where `n` is constant: the exact walk answers, nothing is cut up
 //! - `pieces`: elsewhere: which pieces of much the same size triangles fall into
 //! - `fine`: micro-triangles of pieces, made where rays come, from a tree that is nowhere stored
+//! - `cells`: which displacements their parts have
 //! - `local`: which of their parts a ray can meet
 //! - `micro`: the same micro-triangles all at once, in a tree of their own, where memory allows
 //! - `trace`: what a ray meets
@@ -17,6 +18,7 @@
 //! Source: surface and bounds after techniques of Thonat et al. 2021 (tessellation-free displacement),
 //! without its affine arithmetic, which an `n` that is not normalised makes unnecessary.
 
+mod cells;
 mod charts;
 mod fine;
 mod flat;

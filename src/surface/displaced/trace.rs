@@ -21,7 +21,7 @@ const RAYS_BETWEEN_STOPS: usize = 16;
 
 /// Prisms of flat reliefs that are kept at hand, and pieces that are cut up.
 const PRISMS: usize = 16;
-const PATCHES: usize = 32;
+const PATCHES: usize = 128;
 
 /// A point of a displaced surface.
 #[derive(Debug, Clone, Copy, PartialEq)]

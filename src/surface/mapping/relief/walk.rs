@@ -246,9 +246,30 @@ impl<'a> ReliefField<'a> {
         while level < top && (x.is_wider(level) | y.is_wider(level)).any() {
             level += 1;
         }
+        let (i, x_known) = x.nodes(level);
+        let (j, y_known) = y.nodes(level);
+        let [low, high] = self.ranges_in(level, i, j);
+        let [all_low, all_high] = self.range;
+        let known = x_known & y_known;
+        let margin = self.range_margin();
+        [
+            F::select(known, low, like.splat(all_low as f32 - margin)),
+            F::select(known, high, like.splat(all_high as f32 + margin)),
+        ]
+    }
+
+    /// Smallest and largest displacements, or somewhat more, in squares of 2^level cells: the four that two columns and
+    /// two rows share. No square may begin outside the picture.
+    #[inline(always)]
+    #[must_use]
+    pub fn ranges_in<B: Bits>(
+        &self,
+        level: u32,
+        [i0, i1]: [B; 2],
+        [j0, j1]: [B; 2],
+    ) -> [B::Real; 2] {
+        let height = &self.height;
         let squares = self.layout.level(level);
-        let ([i0, i1], x_known) = x.nodes(level);
-        let ([j0, j1], y_known) = y.nodes(level);
         // No map has 2³² texels.
         let [right, down] = squares.steps.map(|step| step as u32);
         let (i0, i1) = (i0.times(right), i1.times(right));
@@ -262,14 +283,14 @@ impl<'a> ReliefField<'a> {
         ];
         let [low, high] = match self.stored {
             StoredHeights::U16(all) => {
-                let [[a], [b], [c], [d]] = F::Bits::gather(nodes, |node| {
+                let [[a], [b], [c], [d]] = B::gather(nodes, |node| {
                     let [low, high] = squares.extremes(all, node as usize);
                     [u32::from(low) | u32::from(high) << 16]
                 });
                 extremes([fractions(a), fractions(b), fractions(c), fractions(d)])
             }
             StoredHeights::F32(all) => {
-                let [[a, b], [c, d], [e, f], [g, h]] = F::Bits::gather(nodes, |node| {
+                let [[a, b], [c, d], [e, f], [g, h]] = B::gather(nodes, |node| {
                     let [low, high] = squares.extremes(all, node as usize);
                     [low.to_bits(), high.to_bits()]
                 });
@@ -283,14 +304,24 @@ impl<'a> ReliefField<'a> {
         };
         let at_low = low * height.scale + height.offset;
         let at_high = high * height.scale + height.offset;
-        let [all_low, all_high] = self.range;
-        let known = x_known & y_known;
-        let low = F::select(known, at_low.smaller(at_high), like.splat(all_low as f32));
-        let high = F::select(known, at_low.larger(at_high), like.splat(all_high as f32));
-        // Roundings here and of the heights themselves.
-        let largest = all_low.abs().max(all_high.abs()) as f32;
-        let margin = (largest + height.offset.abs()) * 1e-6;
-        [low - margin, high + margin]
+        let margin = self.range_margin();
+        [
+            at_low.smaller(at_high) - margin,
+            at_low.larger(at_high) + margin,
+        ]
+    }
+
+    /// What roundings of ranges and of the heights themselves may come to.
+    fn range_margin(&self) -> f32 {
+        let [low, high] = self.range;
+        let largest = low.abs().max(high.abs()) as f32;
+        (largest + self.height.offset.abs()) * 2e-6
+    }
+
+    /// Columns and rows of the map.
+    #[must_use]
+    pub const fn size(&self) -> [u32; 2] {
+        self.layout.size
     }
 
     /// Displacement at a place in texels; 0 farther away than anything can be.
