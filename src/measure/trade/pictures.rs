@@ -8,12 +8,12 @@ use crate::render::{PassEnd, Picture, Progressive, Snapshot};
 
 /// The true picture of a view.
 pub struct Reference {
-    /// From all samples.
-    pub picture: Picture,
     /// How far its halves, from samples of their own, are from the whole.
     pub noise: PictureErrors,
-    /// From the samples that methods are compared by: its own first half.
-    sampled: Halved,
+    /// From the first half of its samples, by which methods are compared to begin with.
+    first: Halved,
+    /// From all samples.
+    all: Halved,
 }
 
 /// A picture, and the two that either half of its samples make.
@@ -74,11 +74,10 @@ fn start(renderer: &mut Progressive, snapshot: &Snapshot, samples: u32) {
 }
 
 impl Reference {
-    /// Renders it with `4 · half` samples per pixel, the first `2 · half` of them those of the methods' pictures;
-    /// `None` if it was stopped.
+    /// Renders it with `4 · half` samples per pixel; `None` if it was stopped.
     ///
-    /// Either half of these, and either half of all, is a set of its own, as evenly spread as the whole: what the
-    /// two disagree about is what the whole does not know yet.
+    /// Either half of these, and either half of the first half, is a set of its own, as evenly spread as the whole:
+    /// what the two disagree about is what the whole does not know yet.
     #[must_use]
     pub fn render(
         renderer: &mut Progressive,
@@ -88,17 +87,22 @@ impl Reference {
     ) -> Option<Self> {
         start(renderer, snapshot, 4 * half);
         let mut next = |count| samples_on(renderer, count, stop).then(|| renderer.picture());
-        let [quarter, sampled, picture] = [next(half)?, next(half)?, next(2 * half)?];
-        let all = Halved::new(picture, sampled.clone());
+        let [quarter, first, picture] = [next(half)?, next(half)?, next(2 * half)?];
+        let all = Halved::new(picture, first.clone());
         Some(Self {
             noise: all.noise(),
-            picture: all.whole,
-            sampled: Halved::new(sampled, quarter),
+            first: Halved::new(first, quarter),
+            all,
         })
     }
 
-    /// The picture of a method from `2 · half` samples per pixel, with its errors. `on_the_way` also asks for the
-    /// FLIP after 1, 2, 4, … samples, against all samples of the reference.
+    /// From all samples.
+    pub const fn picture(&self) -> &Picture {
+        &self.all.whole
+    }
+
+    /// The picture of a method from `2 · half` samples per pixel, with its errors; from `4 · half` if these do not tell
+    /// them. `on_the_way` also asks for the FLIP after 1, 2, 4, … of the first samples, against all of the reference.
     #[must_use]
     pub fn compare(
         &self,
@@ -107,27 +111,34 @@ impl Reference {
         half: u32,
         on_the_way: bool,
     ) -> Compared {
-        start(renderer, snapshot, 2 * half);
+        start(renderer, snapshot, 4 * half);
         let mut flip_by_samples = Vec::new();
         let mut next = 1;
-        let mut first = None;
-        while !renderer.is_converged() {
+        let mut quarter = None;
+        while renderer.samples() < 2 * half {
             renderer.pass(&|| false);
-            if renderer.samples() == half {
-                first = Some(renderer.picture());
+            let samples = renderer.samples();
+            if samples == half {
+                quarter = Some(renderer.picture());
             }
-            if on_the_way && (renderer.samples() == next || renderer.is_converged()) {
-                flip_by_samples.push(mean(&flip_of(&renderer.picture(), &self.picture)));
+            if on_the_way && (samples == next || samples == 2 * half) {
+                flip_by_samples.push(mean(&flip_of(&renderer.picture(), self.picture())));
                 next *= 2;
             }
         }
-        let whole = renderer.picture();
-        let first = first.unwrap_or_else(|| whole.clone());
-        let picture = Halved::new(whole, first);
-        let (errors, doubt, flip_map) = picture.against(&self.sampled);
+        let first = renderer.picture();
+        let quarter = quarter.unwrap_or_else(|| first.clone());
+        let mut picture = Halved::new(first, quarter);
+        let (mut errors, mut doubt, mut flip_map) = picture.against(&self.first);
+        if doubt.limits(&errors) {
+            samples_on(renderer, 2 * half, &|| false);
+            picture = Halved::new(renderer.picture(), picture.whole);
+            (errors, doubt, flip_map) = picture.against(&self.all);
+        }
         Compared {
             errors,
             doubt,
+            samples: renderer.samples(),
             flip_by_samples,
             picture: picture.whole,
             flip_map,
@@ -141,6 +152,8 @@ pub struct Compared {
     pub errors: PictureErrors,
     /// How far that is from what either half of the samples says.
     pub doubt: PictureDoubt,
+    /// Samples per pixel that it took.
+    pub samples: u32,
     /// After 1, 2, 4, … and all samples; empty if nobody asked.
     pub flip_by_samples: Vec<f64>,
     /// The picture.

@@ -31,8 +31,8 @@ pub struct Plan {
     pub rays: u32,
     /// Columns and rows of the pictures that are compared.
     pub size: [u32; 2],
-    /// Samples per pixel of every method's picture, at least 2, odd numbers rounded down; the reference has twice as
-    /// many.
+    /// Samples per pixel of every method's picture, at least 2, odd numbers rounded down; where these do not tell its
+    /// errors, and for the reference, twice as many.
     pub samples: u32,
     /// Columns and rows of the frames that are timed.
     pub timed_size: [u32; 2],
@@ -89,7 +89,7 @@ impl Plan {
         }
     }
 
-    /// Samples per pixel in either half of a method's picture.
+    /// Half the samples per pixel of a method's picture.
     #[must_use]
     pub fn half_samples(&self) -> u32 {
         (self.samples / 2).max(1)

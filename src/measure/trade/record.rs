@@ -124,7 +124,9 @@ pub struct Cell {
     pub variant: Variant,
     /// Where rays land.
     pub geometry: GeometricErrors,
-    /// How the picture looks, against that of the reference from the same samples.
+    /// Samples per pixel of the picture.
+    pub samples: u32,
+    /// How it looks, against that of the reference from the same samples.
     pub picture: PictureErrors,
     /// What these samples leave open about that.
     pub picture_doubt: PictureDoubt,

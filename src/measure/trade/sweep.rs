@@ -186,7 +186,7 @@ impl ViewWork<'_> {
         };
         let shown = self.is_shown();
         if shown {
-            let picture = thumbnail(&reference.picture, None);
+            let picture = thumbnail(reference.picture(), None);
             record.pictures.extend(self.named("truth", picture));
         }
         let mut cells = Vec::new();
@@ -253,6 +253,7 @@ impl ViewWork<'_> {
             bits,
             variant,
             geometry,
+            samples: compared.samples,
             picture: compared.errors,
             picture_doubt: compared.doubt,
             limited_by_noise: compared.doubt.limits(&compared.errors),

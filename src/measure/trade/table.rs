@@ -14,7 +14,7 @@ fn maybe(value: Option<f64>) -> String {
 }
 
 /// Every column: units are in the names.
-const COLUMNS: [Column; 45] = [
+const COLUMNS: [Column; 46] = [
     ("view", |c| c.view.to_string()),
     ("angle_deg", |c| number(c.angle_deg)),
     ("amplitude_factor", |c| number(c.amplitude)),
@@ -40,6 +40,7 @@ const COLUMNS: [Column; 45] = [
     ("shadow_disagreement", |c| {
         maybe(c.geometry.shadow_disagreement)
     }),
+    ("samples_per_pixel", |c| c.samples.to_string()),
     ("linear_rmse", |c| number(c.picture.linear_rmse)),
     ("psnr_db", |c| maybe(c.picture.psnr_db)),
     ("ssim", |c| number(c.picture.ssim)),
