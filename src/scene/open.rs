@@ -12,7 +12,8 @@ use super::{LoadError, LoadedScene, file};
 /// # Errors
 /// [`LoadError`] with file, line and cause; [`LoadError::Unknown`] lists the built-in scenes.
 pub fn open(input: &Path, options: &LoadOptions) -> Result<LoadedScene, LoadError> {
-    let is_file = input.exists();
+    // A folder is nothing to open: beside one that is called `wall` the scene is meant.
+    let is_file = input.exists() && !input.is_dir();
     let name = input.to_str();
     let generated = name
         .filter(|_| !is_file)

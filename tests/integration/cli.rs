@@ -321,6 +321,20 @@ fn options_reach_the_picture() {
 }
 
 #[test]
+fn a_folder_does_not_hide_a_built_in_scene() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("plane")).expect("a folder");
+    let told = good(&folder, &["inspect", "plane"]);
+    assert!(told.contains("Paved plane"), "{told}");
+    std::fs::create_dir(folder.path("maps")).expect("a folder");
+    let errors = refused(&folder, &["inspect", "maps"]);
+    assert!(
+        errors.contains("neither a file nor a built-in scene"),
+        "{errors}"
+    );
+}
+
+#[test]
 fn inspect_tells_what_is_there() {
     let folder = with_scene();
     folder.write(

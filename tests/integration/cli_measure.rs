@@ -20,7 +20,7 @@ const TINY: [&str; 15] = [
     "--size",
     "16x9",
     "--samples",
-    "1",
+    "2",
     "--quick",
 ];
 

@@ -1,6 +1,7 @@
-//! A small sweep of the scene on show, for a window: few rays, no pictures, soon done.
+//! A small sweep of the scene on show, for a window: few rays, small pictures, soon done.
 
 use super::geometric::TrueView;
+use super::pictures::Reference;
 use super::sights::Pinhole;
 use super::{
     Advice, GeometricErrors, Measured, Subject, TradeError, Truth, Variant, View, advise, timing,
@@ -17,6 +18,9 @@ const ANGLES: [f64; 6] = [0.0, 30.0, 45.0, 60.0, 75.0, 85.0];
 const TIMED: [u32; 2] = [160, 90];
 /// Times of each frame.
 const ROUNDS: u32 = 5;
+/// Columns and rows of the pictures that are compared in the scene's own view, and half their samples per pixel.
+const COMPARED: [u32; 2] = [160, 90];
+const HALF_SAMPLES: u32 = 2;
 
 /// What a glance found.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -40,6 +44,8 @@ pub struct GlancePoint {
     pub is_own: bool,
     /// Where rays land.
     pub errors: GeometricErrors,
+    /// Mean FLIP of the picture; in the scene's own view.
+    pub flip: Option<f64>,
     /// Time of a sample on the model, median, ns.
     pub ns: f64,
 }
@@ -54,7 +60,7 @@ pub struct GlancePoint {
 pub fn glance(
     snapshot: &Snapshot,
     renderer: &mut Progressive,
-    stop: &dyn Fn() -> bool,
+    stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<Option<Glance>, TradeError> {
     let subject = Subject::new(snapshot.clone(), Truth::suiting(snapshot))?;
     let own = subject.own_angle_deg();
@@ -108,7 +114,7 @@ fn look(
     (view, is_own): (View, bool),
     variants: &[Variant],
     renderer: &mut Progressive,
-    stop: &dyn Fn() -> bool,
+    stop: &(dyn Fn() -> bool + Sync),
 ) -> Option<Vec<GlancePoint>> {
     let seen = subject.seen_from(view);
     let size = subject.snapshot().size;
@@ -128,6 +134,7 @@ fn look(
             angle_deg: view.angle_deg,
             is_own,
             errors: truth.errors(&frame, None),
+            flip: None,
             ns: f64::INFINITY,
         });
     }
@@ -139,6 +146,16 @@ fn look(
         let costs = timing::costs(renderer, &timed, ROUNDS, sights.covered());
         for (point, cost) in points.iter_mut().zip(costs) {
             point.ns = cost.ns_per_sample.median;
+        }
+        let exact = subject.true_snapshot(&seen, COMPARED);
+        let reference = Reference::render(renderer, &exact, HALF_SAMPLES, stop)?;
+        for point in &mut points {
+            if stop() {
+                return None;
+            }
+            let snapshot = subject.variant_snapshot(&seen, (&point.variant, 0), COMPARED);
+            let compared = reference.compare(renderer, &snapshot, HALF_SAMPLES, false);
+            point.flip = Some(compared.errors.flip);
         }
     }
     Some(points)
@@ -159,7 +176,7 @@ impl Glance {
             variant: p.variant,
             angle_deg: p.angle_deg,
             p95_texels: p.errors.uv_texels.p95,
-            flip: None,
+            flip: p.flip,
             ns: time(p.variant),
         };
         self.points.iter().map(point).collect()

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use egui::{Color32, Pos2, RichText, Ui};
-use egui_plot::{GridMark, HoverPosition, Line, MarkerShape, Plot, PlotPoint, PlotUi, Points};
+use egui_plot::{
+    GridInput, GridMark, HoverPosition, Line, MarkerShape, Plot, PlotPoint, PlotUi, Points,
+};
 
 use super::PanelContext;
 use crate::measure::trade::{Glance, GlancePoint, PlotMetric, Variant, method_color};
@@ -13,6 +15,8 @@ use crate::viewer::theme;
 
 /// Points of a plot, downwards.
 const HEIGHT: f32 = 210.0;
+/// More powers of ten than any figure here spans.
+const MOST_DECADES: f64 = 50.0;
 /// A click may miss its point by so many points.
 const REACH: f32 = 12.0;
 
@@ -46,7 +50,7 @@ pub(super) fn trade_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
             advice_ui(ui, &glance, mapping);
             cost_ui(ui, &glance, mapping);
             angle_ui(ui, &glance, mapping);
-            let note = "Times share the machine with the picture; `reliefscope measure` takes them alone, and compares pictures, too.";
+            let note = "Times share the machine with the picture, and pictures are small; `reliefscope measure` takes its time.";
             ui.add(egui::Label::new(RichText::new(note).small().color(theme::WEAK)).wrap());
         }
     }
@@ -121,6 +125,7 @@ fn angle_ui(ui: &mut Ui, glance: &Glance, mapping: &MappingSettings) {
         .x_axis_label("degrees from the normal")
         .include_x(0.0)
         .include_x(90.0)
+        .x_grid_spacer(egui_plot::uniform_grid_spacer(|_| [15.0, 30.0, 90.0]))
         .label_formatter(|hover| match hover {
             HoverPosition::NearDataPoint {
                 plot_name,
@@ -165,26 +170,42 @@ fn line_of(plot: &mut PlotUi<'_>, glance: &Glance, variant: Variant, mapping: &M
 
 /// A plot whose error axis (and cost axis, if asked) holds logarithms.
 fn log_plot<'a>(name: &str, log_x: bool) -> Plot<'a> {
-    let power = |mark: GridMark| {
-        let whole = mark.value.round();
-        let is_whole = (mark.value - whole).abs() < 1e-6;
-        if is_whole {
-            crate::measure::trade::short(10.0_f64.powf(whole))
-        } else {
-            String::new()
-        }
-    };
+    let power = |mark: GridMark| crate::measure::trade::short(10.0_f64.powf(mark.value));
     let plot = Plot::new(name)
         .height(HEIGHT)
         .allow_scroll(false)
         .allow_boxed_zoom(false)
         .y_axis_label(PlotMetric::Texels.name())
+        .y_grid_spacer(decades)
         .y_axis_formatter(move |mark, _| power(mark));
     if log_x {
-        plot.x_axis_formatter(move |mark, _| power(mark))
+        plot.x_grid_spacer(decades)
+            .x_axis_formatter(move |mark, _| power(mark))
     } else {
         plot
     }
+}
+
+/// Marks at the powers of ten in sight; at 2 and 5 times these, too, where few are.
+fn decades(input: GridInput) -> Vec<GridMark> {
+    let (low, high) = input.bounds;
+    if !(high - low < MOST_DECADES) {
+        return Vec::new();
+    }
+    let digits: &[f64] = if high - low < 2.0 {
+        &[1.0, 2.0, 5.0]
+    } else {
+        &[1.0]
+    };
+    let powers = low.floor() as i32..=high.ceil() as i32;
+    let marks = powers.flat_map(|power| {
+        digits.iter().map(move |digit| GridMark {
+            value: f64::from(power) + digit.log10(),
+            // All are worth a label.
+            step_size: 1.0,
+        })
+    });
+    marks.filter(|m| (low..=high).contains(&m.value)).collect()
 }
 
 fn log_error(point: &GlancePoint) -> f64 {
@@ -215,8 +236,11 @@ fn bright(variant: Variant) -> Color32 {
 
 fn told(point: &GlancePoint) -> String {
     let errors = &point.errors;
+    let flip = point
+        .flip
+        .map_or_else(String::new, |flip| format!("\nFLIP {flip:.3}"));
     format!(
-        "{}\n{:.0} ns per sample\nuv {:.3} texels (p95)\nnormal {:.1}° (p95)",
+        "{}\n{:.0} ns per sample\nuv {:.3} texels (p95)\nnormal {:.1}° (p95){flip}",
         point.variant.label(),
         point.ns,
         errors.uv_texels.p95,
