@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use nv_flip::FlipImageRgb8;
 use reliefscope::math::LinearRgb;
 use reliefscope::measure::flip::{PIXELS_PER_DEGREE, flip};
 use reliefscope::measure::{metrics, read_picture};
@@ -84,8 +85,7 @@ fn generated(kind: &str, moved: u32) -> Picture {
 ///     computeMeanError=True, parameters={"ppd": ppd})  # mean, maximum, and the value at column 30 of row 20
 /// ```
 ///
-/// Crates that could run beside do not do: `nv-flip` compiles NVIDIA's C++, which tests would then need a compiler for,
-/// `image-compare` and `dssim` weigh otherwise than Wang et al.
+/// For SSIM no crate does: `image-compare` and `dssim` weigh otherwise than Wang et al.
 #[test]
 fn ssim_and_flip_are_those_of_the_usual_programs() {
     type Flips = [(f32, [f64; 3]); 2];
@@ -141,6 +141,45 @@ fn ssim_and_flip_are_those_of_the_usual_programs() {
                     "{kind}, {ppd}: FLIP {ours}, not {theirs}"
                 );
             }
+        }
+    }
+}
+
+/// The authors' own code beside ours, on the same bytes.
+#[test]
+fn every_pixel_of_flip_is_that_of_its_authors() {
+    let linear = |byte: u8| {
+        let c = f64::from(byte) / 255.0;
+        let linear = if c <= 0.04045 {
+            c / 12.92
+        } else {
+            ((c + 0.055) / 1.055).powf(2.4)
+        };
+        linear as f32
+    };
+    for kind in ["slopes", "noise", "stripes", "dots"] {
+        let [a, b] = [0, 2].map(|moved| generated(kind, moved));
+        let [w, h] = [a.width, a.height];
+        // Whatever the bytes mean: both are given the same.
+        let bytes = |picture: &Picture| -> Vec<u8> {
+            let channels = picture.pixels.iter().flat_map(|p| p.to_array());
+            channels.map(|c| (c * 255.0).round() as u8).collect()
+        };
+        let (a, b) = (bytes(&a), bytes(&b));
+        let pixels = |bytes: &[u8]| -> Vec<LinearRgb> {
+            let pixels = bytes.chunks_exact(3);
+            pixels
+                .map(|p| LinearRgb::new(linear(p[0]), linear(p[1]), linear(p[2])))
+                .collect()
+        };
+        for ppd in [PIXELS_PER_DEGREE, 24.0] {
+            let ours = flip(&pixels(&a), &pixels(&b), w as usize, ppd);
+            let image = |bytes: &[u8]| FlipImageRgb8::with_data(w, h, bytes);
+            let theirs = nv_flip::flip(image(&a), image(&b), ppd).to_vec();
+            let off = |(a, b): (&f32, &f32)| (a - b).abs();
+            let off = ours.iter().zip(&theirs).map(off).fold(0.0, f32::max);
+            eprintln!("{kind}, {ppd} pixels a degree: {off}");
+            assert!(off < 1e-4, "{kind}, {ppd}: {off}");
         }
     }
 }
