@@ -540,7 +540,7 @@ impl<'a, 'm> Meeting<'a, 'm> {
     ) -> Best {
         let (door, stack) = (self.door, &mut self.stack);
         let local = LocalRay::new(ray, frame);
-        // Half of the pieces whose boxes are met are flown over.
+        // Boxes lie along the axes of space: many pieces whose boxes are met are flown over.
         let whole = ([0.0, 0.0, 1.0], 1.0);
         if local.meets(whole, patch.range, best.t).1 {
             return best;

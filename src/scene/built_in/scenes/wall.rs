@@ -14,6 +14,9 @@ pub fn wall() -> Stage {
     const BRICK: f64 = 1.5;
     const COBBLE: f64 = 1.1;
     const STONE: f64 = 0.9;
+    // Wall and yard pass through each other, deeper than their reliefs: if they shared corners, true displacement would
+    // hold them together there, and lean over all of both.
+    const PAST: f64 = 0.06;
     let mut palette = Palette::default();
     let bricks = palette.relief(Relief::Bricks, BRICK, Finish::MATTE);
     let cobble = palette.relief(Relief::Cobble, COBBLE, Finish::glossy(0.04, 18.0));
@@ -29,15 +32,20 @@ pub fn wall() -> Stage {
     );
 
     let mut mesh = WorldMesh::default();
-    mesh.append(quad(
-        DVec3::new(-6.0, 0.0, 0.0),
-        [DVec3::X * 12.0, DVec3::Z * 4.5],
+    let mut face = quad(
+        DVec3::new(-6.0, 0.0, -PAST),
+        [DVec3::X * 12.0, DVec3::Z * (4.5 + PAST)],
         BRICK,
         bricks,
-    ));
+    );
+    for vertex in &mut face.vertices {
+        // A course begins at the ground.
+        vertex.uv.y -= PAST / BRICK;
+    }
+    mesh.append(face);
     mesh.append(quad(
         DVec3::new(-6.0, -8.0, 0.0),
-        [DVec3::X * 12.0, DVec3::Y * 8.0],
+        [DVec3::X * 12.0, DVec3::Y * (8.0 + PAST)],
         COBBLE,
         cobble,
     ));

@@ -109,8 +109,8 @@ impl Walk {
     };
 }
 
-/// No walk takes more steps, whatever the map: some milliseconds. Seen from 89.99°, a relief ten tiles deep is crossed
-/// in a ninth of them at the most, a step or two for each of 57,000 tiles.
+/// No walk takes more steps, whatever the map: some milliseconds. Seen from 89.99°, a relief ten tiles deep is left
+/// after less than half of them, a step or two for each of 57,000 tiles.
 pub(super) const STEP_CAP: f64 = 524_288.0;
 
 /// Farther from the origin than this many texels nothing is looked for: cells could not be told apart.
