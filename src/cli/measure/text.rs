@@ -44,7 +44,7 @@ pub(super) fn summary(record: &Record) -> String {
 fn view_table(text: &mut String, record: &Record, view: &ViewFacts) {
     let _ = writeln!(
         text,
-        "\n{:.0} degrees, {} rays; * is less than ten times the reference's own error",
+        "\n{:.0} degrees, {} rays; * is less than ten times what halves of the samples differ by",
         view.angle_deg, view.rays
     );
     let _ = writeln!(
