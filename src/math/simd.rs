@@ -142,11 +142,31 @@ impl SimdLevel {
 /// Whether `max` and `min` of these instructions give the second number where one is NaN or both are zeros, as
 /// `if a > b { a } else { b }` does. Those of x86 do; others take a comparison and a choice for that.
 #[inline(always)]
-pub(crate) fn second_wins<S: Simd>(simd: S) -> bool {
+fn second_wins<S: Simd>(simd: S) -> bool {
     match simd.level() {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Sse4_2(_) | Level::Avx2(_) | Level::Avx512(_) => true,
         _ => false,
+    }
+}
+
+/// The larger of each pair; the second where one is NaN, and of two zeros.
+#[inline(always)]
+pub(crate) fn larger<S: Simd, V: SimdFloat<S>>(a: V, b: V) -> V {
+    if second_wins(a.token()) {
+        a.max(b)
+    } else {
+        a.simd_gt(b).select(a, b)
+    }
+}
+
+/// The smaller, likewise.
+#[inline(always)]
+pub(crate) fn smaller<S: Simd, V: SimdFloat<S>>(a: V, b: V) -> V {
+    if second_wins(a.token()) {
+        a.min(b)
+    } else {
+        a.simd_lt(b).select(a, b)
     }
 }
 

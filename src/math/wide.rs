@@ -5,7 +5,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 use super::real::{Bits, Mask, Real};
 use super::simd::{
     Bytes as _, ExtractToken as _, Select as _, Simd, SimdBase, SimdCvtFloat as _, SimdFloat,
-    SimdMask, second_wins,
+    SimdMask, larger, smaller,
 };
 
 /// Most lanes that a vector of any machine has.
@@ -108,19 +108,11 @@ impl<S: Simd> Real for Wide<S> {
     }
     #[inline(always)]
     fn larger(self, o: Self) -> Self {
-        if second_wins(self.0.token()) {
-            Self(self.0.max(o.0))
-        } else {
-            Self::select(o.lt(self), self, o)
-        }
+        Self(larger(self.0, o.0))
     }
     #[inline(always)]
     fn smaller(self, o: Self) -> Self {
-        if second_wins(self.0.token()) {
-            Self(self.0.min(o.0))
-        } else {
-            Self::select(self.lt(o), self, o)
-        }
+        Self(smaller(self.0, o.0))
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

@@ -50,7 +50,7 @@ pub(in crate::cli) struct MeasureArgs {
     /// Size of the pictures in pixels [default: 320x180, or 256x144 with --quick]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
-    /// Samples per pixel of a picture; its reference has twice as many, and so has it where these do not tell its errors [default: 64, or 16 with --quick]
+    /// Samples per pixel of a picture; twice as many of its reference, and of itself where these do not tell its errors [default: 64, or 16 with --quick]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1 << 16))]
     pub samples: Option<u32>,
     /// Frames that are timed, after one that warms up [default: 7, or 5 with --quick]

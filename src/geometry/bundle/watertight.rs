@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::{Bundle, Floats, load3};
 use crate::geometry::triangle::{edge, inside_in_f64, meet_plane, sheared};
-use crate::math::simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, SimdNarrow, SimdWiden};
+use crate::math::simd::{Simd, SimdBase, SimdMask, SimdNarrow, SimdWiden, larger, smaller};
 
 /// Rays of one group that meet a triangle, and where; other lanes hold anything.
 pub(in crate::geometry) struct LaneHits<S: Simd> {
@@ -179,16 +179,4 @@ impl<S: Simd> TriangleLanes<S> {
             low[2].narrow(high[2]),
         ]
     }
-}
-
-/// [`larger`](crate::geometry::slabs::larger) of each pair, also for NaN and zeros.
-#[inline(always)]
-fn larger<S: Simd, V: SimdFloat<S>>(a: V, b: V) -> V {
-    a.simd_gt(b).select(a, b)
-}
-
-/// [`smaller`](crate::geometry::slabs::smaller) of each pair.
-#[inline(always)]
-fn smaller<S: Simd, V: SimdFloat<S>>(a: V, b: V) -> V {
-    a.simd_lt(b).select(a, b)
 }

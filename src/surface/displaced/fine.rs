@@ -5,7 +5,7 @@
 //! coordinates of the piece's own (`local`). Keeping bounds was tried: they come back from memory no sooner than they
 //! are made again, because neighbouring pixels see other parts of a fine map.
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::cells::PieceCells;
 use super::charts::Shape;
@@ -140,8 +140,6 @@ pub struct Patch<'a, 'm> {
     cut: Cut,
     /// Smallest and largest displacement of the piece.
     range: [f32; 2],
-    /// Where it lies on the map, if within; seams are left to the places themselves.
-    cells: Option<PieceCells>,
 }
 
 /// How a piece is cut up.
@@ -208,7 +206,7 @@ impl<'a, 'm> Patch<'a, 'm> {
         let p = mesh.corners(prim);
         let [c0, c1, c2] = corners.map(|w| w.map(|w| f32::from(w) / f32::from(WHOLE)));
         let way = |c: [f32; 2]| [c[0] - c0[0], c[1] - c0[1]];
-        let mut patch = Self {
+        Some(Self {
             piece,
             prim,
             field,
@@ -219,26 +217,7 @@ impl<'a, 'm> Patch<'a, 'm> {
             frame: [c0, way(c1), way(c2)],
             cut,
             range: displacement.ranges[piece as usize],
-            cells: None,
-        };
-        if !cut.on_seam {
-            let uv = |place| patch.uv_in_doubles(place);
-            let corners = [uv([0.0, 0.0]), uv([1.0, 0.0]), uv([0.0, 1.0])];
-            patch.cells = PieceCells::new(field, corners);
-        }
-        Some(patch)
-    }
-
-    /// Texture coordinate at a place in the piece.
-    fn uv_in_doubles(&self, place: [f32; 2]) -> [f64; 2] {
-        let [w0, w1, w2] = self.weights(place).map(f64::from);
-        let [a, b, c] = self.uv.map(|uv| uv.as_dvec2());
-        (a * w0 + b * w1 + c * w2).to_array()
-    }
-
-    /// Its piece.
-    pub const fn piece(&self) -> u32 {
-        self.piece
+        })
     }
 
     /// Weights of the triangle's corners at a place in the piece, given as shares of the ways to its second and third
@@ -282,15 +261,12 @@ impl<'a, 'm> Patch<'a, 'm> {
         [low, high]
     }
 
-    /// The piece's own coordinates.
-    pub fn local_frame(&self) -> LocalFrame {
-        let at = |[c0, c1, c2]: [Vec3; 3], place: [f32; 2]| {
+    /// What belongs to the triangle's corners, at the piece's, in doubles.
+    fn at_corners(&self, [c0, c1, c2]: [Vec3; 3]) -> [DVec3; 3] {
+        [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|place: [f32; 2]| {
             let [w0, w1, w2] = self.weights(place).map(f64::from);
             c0.as_dvec3() * w0 + c1.as_dvec3() * w1 + c2.as_dvec3() * w2
-        };
-        let corners = |of| [at(of, [0.0, 0.0]), at(of, [1.0, 0.0]), at(of, [0.0, 1.0])];
-        let [low, high] = self.range;
-        LocalFrame::new(corners(self.p), corners(self.n), low.abs().max(high.abs()))
+        })
     }
 
     /// Texture coordinate at weights of the triangle's corners.
@@ -456,6 +432,36 @@ impl<'a, 'm> Patch<'a, 'm> {
     }
 }
 
+/// A patch made ready for rays: hits and micro-triangles alone need none of this.
+#[derive(Debug, Clone, Copy)]
+pub struct ReadyPatch<'a, 'm> {
+    patch: Patch<'a, 'm>,
+    frame: LocalFrame,
+    /// Where it lies on the map, if within; seams are left to the places themselves.
+    cells: Option<PieceCells>,
+}
+
+impl<'a, 'm> ReadyPatch<'a, 'm> {
+    pub fn new(patch: Patch<'a, 'm>) -> Self {
+        let [low, high] = patch.range;
+        let (p, n) = (patch.at_corners(patch.p), patch.at_corners(patch.n));
+        let on_map = || {
+            let uv = patch.at_corners(patch.uv.map(|uv| uv.extend(0.0)));
+            PieceCells::new(patch.field, uv.map(|uv| [uv.x, uv.y]))
+        };
+        Self {
+            frame: LocalFrame::new(p, n, low.abs().max(high.abs())),
+            cells: if patch.cut.on_seam { None } else { on_map() },
+            patch,
+        }
+    }
+
+    /// Index of the piece.
+    pub const fn piece(&self) -> u32 {
+        self.patch.piece
+    }
+}
+
 /// Parts on the way: sixteen for each of the seven levels at the most, and those that wait.
 const STACK: usize = 16 * 8;
 
@@ -534,7 +540,11 @@ impl<'a, 'm> Meeting<'a, 'm> {
     pub fn meet<S: Simd>(
         &mut self,
         simd: S,
-        (patch, frame): &(Patch<'_, '_>, LocalFrame),
+        ReadyPatch {
+            patch,
+            frame,
+            cells,
+        }: &ReadyPatch<'_, '_>,
         ray: &FineRay,
         (mut best, any): (Best, bool),
     ) -> Best {
@@ -573,7 +583,7 @@ impl<'a, 'm> Meeting<'a, 'm> {
                     s.get(simd, group) * per_quarter,
                 ];
                 let size = per_quarter.abs();
-                let range = match &patch.cells {
+                let range = match cells {
                     Some(cells) => cells.ranges(patch.field, places, size),
                     None => patch.ranges(self.seam_range, places),
                 };

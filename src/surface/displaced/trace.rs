@@ -3,9 +3,8 @@
 use glam::Vec3;
 
 use super::charts::Shape;
-use super::fine::{Best, FineCounters, FineRay, Meeting, Patch};
+use super::fine::{Best, FineCounters, FineRay, Meeting, Patch, ReadyPatch};
 use super::flat::FlatPrism;
-use super::local::LocalFrame;
 use super::micro::MicroMesh;
 use super::pieces::Piece;
 use super::{Displacement, Reliefs};
@@ -313,7 +312,7 @@ impl Kernel for Visit<'_, '_, '_> {
         } = self.mesh;
         // Rays nearby meet the same few triangles by turns.
         let mut prisms: [Option<(u32, FlatPrism<'_, '_>)>; PRISMS] = [None; PRISMS];
-        let mut patches: [Option<(Patch<'_, '_>, LocalFrame)>; PATCHES] = [None; PATCHES];
+        let mut patches: [Option<ReadyPatch<'_, '_>>; PATCHES] = [None; PATCHES];
         let Tracer {
             asked, rays, jobs, ..
         } = self.tracer;
@@ -354,8 +353,8 @@ impl Kernel for Visit<'_, '_, '_> {
                         let ray = fine_ray
                             .get_or_insert_with(|| FineRay::new(&ray, displacement.reach()));
                         let kept = &mut patches[i as usize % PATCHES];
-                        if kept.is_none_or(|(patch, _)| patch.piece() != i) {
-                            *kept = Patch::new(mesh, door, i).map(|p| (p, p.local_frame()));
+                        if kept.is_none_or(|patch| patch.piece() != i) {
+                            *kept = Patch::new(mesh, door, i).map(ReadyPatch::new);
                         }
                         if let Some(patch) = kept {
                             asked.best = meeting.meet(simd, patch, ray, (asked.best, any));
