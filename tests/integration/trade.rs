@@ -22,6 +22,7 @@ fn tiny(methods: &[Method]) -> Plan {
         rays: 300,
         size: [32, 20],
         samples: 2,
+        most_samples: 8,
         timed_size: [16, 12],
         rounds: 1,
         eight_bits: true,
@@ -155,6 +156,7 @@ fn on_a_curved_mesh_the_displaced_surface_is_the_truth() {
     assert_eq!(Truth::suiting(&waves()), Truth::Walk);
     let plan = Plan {
         samples: 2,
+        most_samples: 8,
         eight_bits: false,
         ..tiny(&[Method::None, Method::Exact, Method::Displacement])
     };
@@ -219,6 +221,7 @@ fn the_known_shape_comes_out_on_the_reference_plane() {
         rays: 1500,
         size: [96, 54],
         samples: 8,
+        most_samples: 32,
         timed_size: [16, 9],
         rounds: 1,
         ..Plan::quick()
@@ -283,6 +286,7 @@ fn the_published_table_comes_out_against_our_own_truth() {
         rays: 10,
         size: [512, 288],
         samples: 4,
+        most_samples: 16,
         timed_size: [16, 9],
         rounds: 1,
         ..Plan::quick()

@@ -27,7 +27,7 @@ pub(in crate::cli) struct MeasureArgs {
     #[arg(long, value_name = "I/N", value_parser = parse_shard)]
     pub shard: Option<Shard>,
     /// Join the measure.json files of shards instead of measuring
-    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["input", "quick", "shard", "threads", "seed", "angles", "amplitudes", "methods", "rays", "size", "samples", "passes", "set", "no_normalize"])]
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["input", "quick", "shard", "threads", "seed", "angles", "amplitudes", "methods", "rays", "size", "samples", "most_samples", "passes", "set", "no_normalize"])]
     pub merge: Vec<PathBuf>,
     /// Worker threads; 0 means one per core. Only times depend on it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads_parser())]
@@ -50,9 +50,12 @@ pub(in crate::cli) struct MeasureArgs {
     /// Size of the pictures in pixels [default: 320x180, or 256x144 with --quick]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
-    /// Samples per pixel of a picture; twice as many of its reference, and of itself where these do not tell its errors [default: 64, or 16 with --quick]
+    /// Samples per pixel of a picture, twice as many of its reference [default: 64, or 16 with --quick]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1 << 16))]
     pub samples: Option<u32>,
+    /// Most samples per pixel of pictures whose errors fewer do not tell [default: 16 times as many]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1 << 20))]
+    pub most_samples: Option<u32>,
     /// Frames that are timed, after one that warms up [default: 7, or 5 with --quick]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub passes: Option<u32>,

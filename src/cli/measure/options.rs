@@ -113,6 +113,7 @@ impl MeasureArgs {
         plan.rays = self.rays.unwrap_or(plan.rays);
         plan.size = self.size.unwrap_or(plan.size);
         plan.samples = self.samples.unwrap_or(plan.samples);
+        plan.most_samples = self.most_samples.unwrap_or(16 * plan.samples);
         plan.rounds = self.passes.unwrap_or(plan.rounds);
         plan.seed = self.seed;
         plan
@@ -137,6 +138,7 @@ impl MeasureArgs {
         add("--rays ", self.rays.map(|n| n.to_string()));
         add("--size ", self.size.map(|[w, h]| format!("{w}x{h}")));
         add("--samples ", self.samples.map(|n| n.to_string()));
+        add("--most-samples ", self.most_samples.map(|n| n.to_string()));
         add("--passes ", self.passes.map(|n| n.to_string()));
         add("--seed ", (self.seed != 1).then(|| self.seed.to_string()));
         for (key, value) in &self.set {

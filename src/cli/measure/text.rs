@@ -49,7 +49,7 @@ fn view_table(text: &mut String, record: &Record, view: &ViewFacts) {
     );
     let _ = writeln!(
         text,
-        "  {:<28}{:>9}{:>9}{:>8}{:>8}{:>8}{:>8}{:>7}{:>8}{:>9}{:>9}",
+        "  {:<28}{:>9}{:>9}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8} {:>9}{:>9}",
         "method",
         "uv p50",
         "uv p95",
@@ -70,10 +70,11 @@ fn view_table(text: &mut String, record: &Record, view: &ViewFacts) {
 }
 
 fn line(cell: &Cell) -> String {
-    let (g, p) = (&cell.geometry, &cell.picture);
+    let g = &cell.geometry;
+    let [_, psnr, ssim, flip] = cell.picture.told();
     let percent = |share: f64| format!("{:.1}%", share * 100.0);
     format!(
-        "  {:<28}{:>9.3}{:>9.3}{:>8}{:>8.2}{:>8}{:>8}{:>7.3}{:>7.3}{}{:>9.1}{:>9.0}",
+        "  {:<28}{:>9.3}{:>9.3}{:>8}{:>8.2}{:>8}{psnr:>8}{ssim:>8}{flip:>8}{}{:>9.1}{:>9.0}",
         cell.variant.label(),
         g.uv_texels.p50,
         g.uv_texels.p95,
@@ -81,10 +82,6 @@ fn line(cell: &Cell) -> String {
         g.normal_deg.p95,
         g.shadow_disagreement
             .map_or_else(|| "-".to_owned(), percent),
-        p.psnr_db
-            .map_or_else(|| "inf".to_owned(), |db| format!("{db:.1}")),
-        p.ssim,
-        p.flip,
         if cell.limited_by_noise { "*" } else { " " },
         cell.cost.look_ups + cell.cost.steps,
         cell.cost.ns_per_sample.median,

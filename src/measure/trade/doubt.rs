@@ -7,6 +7,15 @@ use super::PictureErrors;
 /// A figure is known if it is this many times what the halves of its samples differ by.
 const CLEAR: f64 = 10.0;
 
+/// Errors below these are told as being below: on the average such pictures differ by less than half a step of 8 bits,
+/// which rounds to the same.
+const LEAST: PictureErrors = PictureErrors {
+    linear_rmse: 1.0 / 510.0,
+    psnr_db: Some(54.15),
+    ssim: 0.999,
+    flip: 0.002,
+};
+
 /// How far the errors that either half of the samples gives are from those that all of them give, at most.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct PictureDoubt {
@@ -36,19 +45,54 @@ impl PictureDoubt {
         }
     }
 
-    /// Whether one of the errors is less than ten times the doubt about it. Decibels count as the root mean square that
-    /// they tell of.
+    /// Whether one of the errors, or what it is told to be below, is less than ten times the doubt about it. Decibels
+    /// count as the root mean square that they tell of.
     #[must_use]
     pub fn limits(&self, errors: &PictureErrors) -> bool {
-        let psnr = 10.0_f64.powf(self.psnr_db / 20.0) - 1.0;
-        errors.linear_rmse < CLEAR * self.linear_rmse
-            || errors.flip < CLEAR * self.flip
-            || 1.0 - errors.ssim < CLEAR * self.ssim
-            || 1.0 < CLEAR * psnr
+        let told = PictureErrors::worse(*errors, LEAST);
+        // Share of the root mean square by which so many decibels more would change it.
+        let share = |doubt_db: f64| 10.0_f64.powf(doubt_db / 20.0) - 1.0;
+        let below = told
+            .psnr_db
+            .zip(errors.psnr_db)
+            .map_or(0.0, |(told, db)| db - told);
+        told.linear_rmse < CLEAR * self.linear_rmse
+            || told.flip < CLEAR * self.flip
+            || 1.0 - told.ssim < CLEAR * self.ssim
+            || 1.0 < CLEAR * share(self.psnr_db) * 10.0_f64.powf(-below / 20.0)
     }
 }
 
 impl PictureErrors {
+    /// Root mean square, decibels, SSIM and FLIP in words; those of pictures that are nearer than anybody sees say just
+    /// that.
+    #[must_use]
+    pub fn told(&self) -> [String; 4] {
+        let is_same = self.psnr_db.is_none();
+        let below = |error: f64, least: f64| {
+            if error < least && !is_same {
+                format!("<{least:.3}")
+            } else {
+                format!("{error:.3}")
+            }
+        };
+        let least_db = LEAST.psnr_db.unwrap_or_default();
+        [
+            below(self.linear_rmse, LEAST.linear_rmse),
+            match self.psnr_db {
+                None => "∞".to_owned(),
+                Some(db) if db > least_db => format!(">{least_db:.1}"),
+                Some(db) => format!("{db:.1}"),
+            },
+            if self.ssim > LEAST.ssim && !is_same {
+                format!(">{:.3}", LEAST.ssim)
+            } else {
+                format!("{:.3}", self.ssim)
+            },
+            below(self.flip, LEAST.flip),
+        ]
+    }
+
     /// The worse of two in each figure.
     #[must_use]
     pub fn worse(a: Self, b: Self) -> Self {
@@ -109,6 +153,51 @@ mod tests {
             ..PictureErrors::default()
         };
         assert!(!PictureDoubt::of(&equal, &[equal; 2]).limits(&equal));
+    }
+
+    #[test]
+    fn what_is_told_as_below_is_known_by_what_it_is_below() {
+        let near = PictureErrors {
+            linear_rmse: 0.001,
+            psnr_db: Some(60.0),
+            ssim: 0.9999,
+            flip: 0.001,
+        };
+        // Of the figures themselves next to nothing is known.
+        let known = PictureDoubt {
+            linear_rmse: 0.000_19,
+            psnr_db: 1.5,
+            ssim: 0.000_09,
+            flip: 0.000_19,
+        };
+        assert!(!known.limits(&near));
+        let doubts = [
+            PictureDoubt {
+                linear_rmse: 0.000_2,
+                ..known
+            },
+            // A fifth of the root mean square of 60 dB is a tenth of that of 54.
+            PictureDoubt {
+                psnr_db: 1.6,
+                ..known
+            },
+            PictureDoubt {
+                ssim: 0.000_11,
+                ..known
+            },
+            PictureDoubt {
+                flip: 0.000_21,
+                ..known
+            },
+        ];
+        assert!(doubts.iter().all(|doubt| doubt.limits(&near)));
+        assert_eq!(near.told(), ["<0.002", ">54.1", ">0.999", "<0.002"]);
+        assert_eq!(WHOLE.told(), ["0.100", "20.0", "0.500", "0.200"]);
+        let same = PictureErrors {
+            ssim: 1.0,
+            ..PictureErrors::default()
+        };
+        assert_eq!(same.told(), ["0.000", "∞", "1.000", "0.000"]);
     }
 
     #[test]

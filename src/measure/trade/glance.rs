@@ -1,7 +1,7 @@
 //! A small sweep of the scene on show, for a window: few rays, small pictures, soon done.
 
 use super::geometric::TrueView;
-use super::pictures::Reference;
+use super::pictures::{Reference, Samples};
 use super::sights::Pinhole;
 use super::{
     Advice, GeometricErrors, Measured, Subject, TradeError, Truth, Variant, View, advise, timing,
@@ -18,9 +18,9 @@ const ANGLES: [f64; 6] = [0.0, 30.0, 45.0, 60.0, 75.0, 85.0];
 const TIMED: [u32; 2] = [160, 90];
 /// Times of each frame.
 const ROUNDS: u32 = 5;
-/// Columns and rows of the pictures that are compared in the scene's own view, and half their samples per pixel.
+/// Columns and rows of the pictures that are compared in the scene's own view, and their samples per pixel.
 const COMPARED: [u32; 2] = [160, 90];
-const HALF_SAMPLES: u32 = 2;
+const SAMPLES: Samples = Samples { half: 2, most: 8 };
 
 /// What a glance found.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -76,7 +76,7 @@ pub fn glance(
             amplitude: 1.0,
         };
         let variants = variants(&subject, is_own);
-        let Some(points) = look(&subject, (view, is_own), &variants, renderer, stop) else {
+        let Some(points) = look(&subject, (view, is_own), &variants, renderer, stop)? else {
             return Ok(None);
         };
         glance.points.extend(points);
@@ -115,7 +115,7 @@ fn look(
     variants: &[Variant],
     renderer: &mut Progressive,
     stop: &(dyn Fn() -> bool + Sync),
-) -> Option<Vec<GlancePoint>> {
+) -> Result<Option<Vec<GlancePoint>>, TradeError> {
     let seen = subject.seen_from(view);
     let size = subject.snapshot().size;
     let exact = subject.true_snapshot(&seen, size);
@@ -125,7 +125,7 @@ fn look(
     let mut points = Vec::new();
     for &variant in variants {
         if stop() {
-            return None;
+            return Ok(None);
         }
         let snapshot = subject.variant_snapshot(&seen, (&variant, 0), size);
         let frame = Frame::new(&snapshot);
@@ -148,17 +148,20 @@ fn look(
             point.ns = cost.ns_per_sample.median;
         }
         let exact = subject.true_snapshot(&seen, COMPARED);
-        let reference = Reference::render(renderer, &exact, HALF_SAMPLES, stop)?;
+        let mut another = Progressive::new(renderer.threads()).map_err(TradeError::Threads)?;
+        let reference = Reference::render(&mut another, &exact, SAMPLES, stop);
+        let Some(mut reference) = reference else {
+            return Ok(None);
+        };
         for point in &mut points {
-            if stop() {
-                return None;
-            }
             let snapshot = subject.variant_snapshot(&seen, (&point.variant, 0), COMPARED);
-            let compared = reference.compare(renderer, &snapshot, HALF_SAMPLES, false);
+            let Some(compared) = reference.compare(renderer, &snapshot, false, stop) else {
+                return Ok(None);
+            };
             point.flip = Some(compared.errors.flip);
         }
     }
-    Some(points)
+    Ok(Some(points))
 }
 
 impl Glance {

@@ -27,8 +27,9 @@ impl Record {
         let limited = self.cells.iter().filter(|c| c.limited_by_noise).count();
         if limited > 0 {
             notes.push(format!(
-                "Of the pictures, {limited} of {} have a figure that is less than ten times what the halves of their samples differ by; more samples would tell it (`*`).",
-                self.cells.len()
+                "Of the pictures, {limited} of {} have a figure that is still less than ten times what the halves of their samples differ by (`*`), with up to {} samples per pixel (`--most-samples`): read such a figure as not more than ten times its doubt.",
+                self.cells.len(),
+                self.plan.most_samples
             ));
         }
         let few = |v: &&ViewFacts| v.rays < self.plan.rays as usize / FEW;

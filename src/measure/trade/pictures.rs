@@ -6,14 +6,24 @@ use crate::measure::flip::{PIXELS_PER_DEGREE, flip};
 use crate::measure::metrics::distance;
 use crate::render::{PassEnd, Picture, Progressive, Snapshot};
 
-/// The true picture of a view.
-pub struct Reference {
-    /// How far its halves, from samples of their own, are from the whole.
+/// Samples per pixel of pictures that are compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Samples {
+    /// Half of what a picture begins with, at least 1.
+    pub half: u32,
+    /// Doubling ends here, however much is in doubt.
+    pub most: u32,
+}
+
+/// The true picture of a view, from as many samples as methods need to be told from it.
+pub struct Reference<'a> {
+    /// How far the halves of [`picture`](Self::picture), from samples of their own, are from the whole.
     pub noise: PictureErrors,
-    /// From the first half of its samples, by which methods are compared to begin with.
-    first: Halved,
-    /// From all samples.
-    all: Halved,
+    samples: Samples,
+    /// Goes on where the last set ends.
+    renderer: &'a mut Progressive,
+    /// From the first 2, 4, 8, … times `samples.half` samples; the first two at once, others when asked for.
+    sets: Vec<Halved>,
 }
 
 /// A picture, and the two that either half of its samples make.
@@ -65,58 +75,79 @@ fn samples_on(renderer: &mut Progressive, count: u32, stop: &(dyn Fn() -> bool +
     true
 }
 
-fn start(renderer: &mut Progressive, snapshot: &Snapshot, samples: u32) {
+fn start(renderer: &mut Progressive, snapshot: &Snapshot) {
     let mut snapshot = snapshot.clone();
     let mut settings = (*snapshot.settings).clone();
-    settings.samples = samples;
+    // Whoever started it knows when to end.
+    settings.samples = u32::MAX;
     snapshot.settings = std::sync::Arc::new(settings);
     renderer.start(snapshot);
 }
 
-impl Reference {
-    /// Renders it with `4 · half` samples per pixel; `None` if it was stopped.
+impl<'a> Reference<'a> {
+    /// Renders it with `4 · samples.half` samples per pixel; `None` if it was stopped.
     ///
     /// Either half of these, and either half of the first half, is a set of its own, as evenly spread as the whole:
     /// what the two disagree about is what the whole does not know yet.
     #[must_use]
     pub fn render(
-        renderer: &mut Progressive,
+        renderer: &'a mut Progressive,
         snapshot: &Snapshot,
-        half: u32,
+        samples: Samples,
         stop: &(dyn Fn() -> bool + Sync),
     ) -> Option<Self> {
-        start(renderer, snapshot, 4 * half);
-        let mut next = |count| samples_on(renderer, count, stop).then(|| renderer.picture());
-        let [quarter, first, picture] = [next(half)?, next(half)?, next(2 * half)?];
-        let all = Halved::new(picture, first.clone());
-        Some(Self {
-            noise: all.noise(),
-            first: Halved::new(first, quarter),
-            all,
-        })
+        start(renderer, snapshot);
+        let mut next = || samples_on(renderer, samples.half, stop).then(|| renderer.picture());
+        let [quarter, first] = [next()?, next()?];
+        let mut reference = Self {
+            noise: PictureErrors::default(),
+            samples,
+            renderer,
+            sets: vec![Halved::new(first, quarter)],
+        };
+        reference.noise = reference.set(1, stop)?.noise();
+        Some(reference)
     }
 
-    /// From all samples.
-    pub const fn picture(&self) -> &Picture {
-        &self.all.whole
+    /// From `4 · samples.half` samples.
+    pub fn picture(&self) -> &Picture {
+        &self.sets[1].whole
     }
 
-    /// The picture of a method from `2 · half` samples per pixel, with its errors; from `4 · half` if these do not tell
-    /// them. `on_the_way` also asks for the FLIP after 1, 2, 4, … of the first samples, against all of the reference.
+    /// The picture from the first `2 · samples.half · 2ⁱ` samples, made if it is not there yet; `None` if it was stopped.
+    fn set(&mut self, i: usize, stop: &(dyn Fn() -> bool + Sync)) -> Option<&Halved> {
+        while self.sets.len() <= i {
+            let known = &self.sets[self.sets.len() - 1].whole;
+            let more = self.samples.half << self.sets.len();
+            if !samples_on(self.renderer, more, stop) {
+                return None;
+            }
+            self.sets
+                .push(Halved::new(self.renderer.picture(), known.clone()));
+        }
+        Some(&self.sets[i])
+    }
+
+    /// The picture of a method from `2 · samples.half` samples per pixel, with its errors; from twice as many, and so
+    /// on, as long as one of these is in doubt. `on_the_way` also asks for the FLIP after 1, 2, 4, … of the first
+    /// samples, against [`picture`](Self::picture). `None` if it was stopped.
     #[must_use]
     pub fn compare(
-        &self,
+        &mut self,
         renderer: &mut Progressive,
         snapshot: &Snapshot,
-        half: u32,
         on_the_way: bool,
-    ) -> Compared {
-        start(renderer, snapshot, 4 * half);
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Option<Compared> {
+        let Samples { half, most } = self.samples;
+        start(renderer, snapshot);
         let mut flip_by_samples = Vec::new();
         let mut next = 1;
         let mut quarter = None;
         while renderer.samples() < 2 * half {
-            renderer.pass(&|| false);
+            if !samples_on(renderer, 1, stop) {
+                return None;
+            }
             let samples = renderer.samples();
             if samples == half {
                 quarter = Some(renderer.picture());
@@ -129,19 +160,25 @@ impl Reference {
         let first = renderer.picture();
         let quarter = quarter.unwrap_or_else(|| first.clone());
         let mut picture = Halved::new(first, quarter);
-        let (mut errors, mut doubt, mut flip_map) = picture.against(&self.first);
-        if doubt.limits(&errors) {
-            samples_on(renderer, 2 * half, &|| false);
+        let mut set = 0;
+        loop {
+            let (errors, doubt, flip_map) = picture.against(self.set(set, stop)?);
+            let samples = renderer.samples();
+            if !doubt.limits(&errors) || samples > most / 2 {
+                return Some(Compared {
+                    errors,
+                    doubt,
+                    samples,
+                    flip_by_samples,
+                    picture: picture.whole,
+                    flip_map,
+                });
+            }
+            if !samples_on(renderer, samples, stop) {
+                return None;
+            }
             picture = Halved::new(renderer.picture(), picture.whole);
-            (errors, doubt, flip_map) = picture.against(&self.all);
-        }
-        Compared {
-            errors,
-            doubt,
-            samples: renderer.samples(),
-            flip_by_samples,
-            picture: picture.whole,
-            flip_map,
+            set += 1;
         }
     }
 }

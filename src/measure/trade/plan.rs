@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Variant;
+use super::pictures::Samples;
 use crate::surface::mapping::Method;
 
 /// A part of a plan: views `index − 1`, `index − 1 + count`, … of all.
@@ -31,9 +32,12 @@ pub struct Plan {
     pub rays: u32,
     /// Columns and rows of the pictures that are compared.
     pub size: [u32; 2],
-    /// Samples per pixel of every method's picture, at least 2, odd numbers rounded down; where these do not tell its
-    /// errors, and for the reference, twice as many.
+    /// Samples per pixel of every method's picture, at least 2, odd numbers rounded down. The reference's takes twice
+    /// as many.
     pub samples: u32,
+    /// Where these do not tell a picture's errors, it and the reference's take twice as many again and again, up to so
+    /// many.
+    pub most_samples: u32,
     /// Columns and rows of the frames that are timed.
     pub timed_size: [u32; 2],
     /// Frames that are timed of each cell, after one that warms up.
@@ -66,6 +70,7 @@ impl Plan {
             rays: 4000,
             size: [320, 180],
             samples: 64,
+            most_samples: 1024,
             timed_size: [640, 360],
             rounds: 7,
             seed: 1,
@@ -83,16 +88,19 @@ impl Plan {
             rays: 2000,
             size: [256, 144],
             samples: 16,
+            most_samples: 256,
             timed_size: [320, 180],
             rounds: 5,
             ..Self::full()
         }
     }
 
-    /// Half the samples per pixel of a method's picture.
-    #[must_use]
-    pub fn half_samples(&self) -> u32 {
-        (self.samples / 2).max(1)
+    /// How many samples pictures take.
+    pub(super) fn picture_samples(&self) -> Samples {
+        Samples {
+            half: (self.samples / 2).max(1),
+            most: self.most_samples,
+        }
     }
 
     /// Every view, in order.

@@ -6,7 +6,7 @@ use super::{PictureDoubt, Plan, Shard, Variant};
 use crate::measure::bench::Spread;
 
 /// Changes whenever a file of an older program would be misread.
-pub const FORMAT: u32 = 2;
+pub const FORMAT: u32 = 3;
 
 /// A sweep, or a part of one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -42,7 +42,8 @@ pub fn measure(
     threads: usize,
     watch: &Watch<'_>,
 ) -> Result<Record, TradeError> {
-    let mut renderer = Progressive::new(threads).map_err(TradeError::Threads)?;
+    let new_renderer = || Progressive::new(threads).map_err(TradeError::Threads);
+    let (mut renderer, mut reference_renderer) = (new_renderer()?, new_renderer()?);
     if plan.eight_bits {
         subject.prepare_eight_bits();
     }
@@ -83,7 +84,7 @@ pub fn measure(
             seen: subject.seen_from(view),
             renderer: &mut renderer,
         };
-        work.measure(&columns, &watch, &mut record);
+        work.measure(&columns, &mut reference_renderer, &watch, &mut record);
         if (watch.stop)() {
             break;
         }
@@ -174,14 +175,21 @@ struct ViewWork<'a> {
 
 impl ViewWork<'_> {
     /// Adds the view and its cells to the record; fewer if it is stopped.
-    fn measure(&mut self, columns: &[(Variant, u8)], watch: &Watch<'_>, record: &mut Record) {
+    fn measure(
+        &mut self,
+        columns: &[(Variant, u8)],
+        reference_renderer: &mut Progressive,
+        watch: &Watch<'_>,
+        record: &mut Record,
+    ) {
         let size = self.plan.size;
         let exact = self.subject.true_snapshot(&self.seen, size);
         let frame = Frame::new(&exact);
         let sights = Pinhole::of(&frame).sights(self.plan.rays, self.seed());
         let truth = TrueView::new(&frame, self.subject.truth(), &sights);
-        let half = self.plan.half_samples();
-        let Some(reference) = Reference::render(self.renderer, &exact, half, watch.stop) else {
+        let samples = self.plan.picture_samples();
+        let reference = Reference::render(reference_renderer, &exact, samples, watch.stop);
+        let Some(mut reference) = reference else {
             return;
         };
         let shown = self.is_shown();
@@ -195,7 +203,9 @@ impl ViewWork<'_> {
                 break;
             }
             let geometry = self.geometry(&truth, column);
-            let compared = self.compared(&reference, column);
+            let Some(compared) = self.compared(&mut reference, column, watch) else {
+                break;
+            };
             if shown && self.is_usual(column) {
                 let picture = thumbnail(&compared.picture, Some(&compared.flip_map));
                 record
@@ -227,17 +237,17 @@ impl ViewWork<'_> {
         truth.errors(&frame, outline.as_deref())
     }
 
-    fn compared(&mut self, reference: &Reference, &(variant, bits): &(Variant, u8)) -> Compared {
+    fn compared(
+        &mut self,
+        reference: &mut Reference<'_>,
+        &(variant, bits): &(Variant, u8),
+        watch: &Watch<'_>,
+    ) -> Option<Compared> {
         let snapshot = self
             .subject
             .variant_snapshot(&self.seen, (&variant, bits), self.plan.size);
         let on_the_way = self.view.amplitude == 1.0 && bits == self.subject.depths()[0];
-        reference.compare(
-            self.renderer,
-            &snapshot,
-            self.plan.half_samples(),
-            on_the_way,
-        )
+        reference.compare(self.renderer, &snapshot, on_the_way, watch.stop)
     }
 
     fn cell(
@@ -277,7 +287,7 @@ impl ViewWork<'_> {
         }
     }
 
-    fn facts(&self, truth: &TrueView<'_>, sights: &Sights, reference: &Reference) -> ViewFacts {
+    fn facts(&self, truth: &TrueView<'_>, sights: &Sights, reference: &Reference<'_>) -> ViewFacts {
         let angles = truth.angles_deg();
         ViewFacts {
             index: self.view.index,
