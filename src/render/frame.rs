@@ -244,6 +244,8 @@ pub struct FrameDisplacement<'a> {
     weld_seams: bool,
     /// Bytes that micro-triangles may be kept in.
     memory: usize,
+    /// Whether holes are cut out of any of them.
+    pub has_holes: bool,
     /// What was made of them and the mesh.
     pub displacement: Arc<Displacement>,
     /// All its micro-triangles, if they are there.
@@ -258,6 +260,7 @@ impl<'a> FrameDisplacement<'a> {
         mapping: &MappingSettings,
     ) -> Option<Self> {
         let weld_seams = mapping.weld_seams;
+        let has_holes = |m: &FrameMaterial<'_>| m.relief.is_some() && m.opacity.is_some();
         materials.iter().any(|m| m.relief.is_some()).then(|| {
             let fields: Vec<_> = materials.iter().map(|m| m.relief).collect();
             let reliefs = Reliefs {
@@ -271,6 +274,7 @@ impl<'a> FrameDisplacement<'a> {
                 fields,
                 weld_seams,
                 memory,
+                has_holes: materials.iter().any(has_holes),
                 displacement,
             }
         })

@@ -2,6 +2,7 @@
 
 mod counters;
 mod crash;
+mod displaced_rays;
 mod film;
 mod frame;
 mod material;
@@ -22,6 +23,7 @@ mod view;
 
 pub use counters::Counters;
 pub use crash::crashing_pixel;
+pub use displaced_rays::Passage;
 pub use film::Picture;
 pub use frame::{Frame, FrameLight, FrameLightKind};
 pub use material::amplitude;

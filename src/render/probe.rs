@@ -9,13 +9,13 @@ use super::stages::camera::Pixels;
 use super::stages::{
     self, Column, Column3, Places, Scratch, Surfaces, camera, light, surface, trace,
 };
-use super::{Counters, Frame, Snapshot};
+use super::{Counters, Frame, Passage, Snapshot};
 use crate::geometry::triangle::Watertight;
 use crate::geometry::{Hit, Ray, UvBox, offset_by_bound};
 use crate::math::{LinearRgb, V3, angle, gamma, srgb8_from_linear};
 use crate::scene::BentNormals;
 use crate::shading::softened_horizon;
-use crate::surface::displaced::{SurfaceHit, Tracer};
+use crate::surface::displaced::SurfaceHit;
 use crate::surface::mapping::relief::is_shadowed;
 use crate::surface::{
     Facet, FacetKind, SmoothedPoint, SurfaceInteraction, SurfaceParts, surface_at,
@@ -259,10 +259,7 @@ struct Nearest {
 fn nearest(frame: &Frame<'_>, ray: &Ray, t_max: f32) -> Option<Nearest> {
     let tests = trace::CutoutTests::default();
     let solid = |prim, u, v| tests.is_there(frame, ray, (prim, u, v));
-    let displaced = frame.displaced.as_ref().and_then(|relief| {
-        let mesh = relief.mesh(frame.mesh);
-        mesh.closest(&mut Tracer::default(), ray, t_max, frame.level)
-    });
+    let displaced = Passage::default().closest(frame, ray, t_max);
     let t_max = displaced.map_or(t_max, |hit| hit.t);
     let plain = frame.bvh.intersect::<Watertight, _>(ray, t_max, &solid);
     match (plain, displaced) {

@@ -12,6 +12,7 @@ mod bvh;
 mod cli;
 mod cli_measure;
 mod destair;
+mod displaced_holes;
 mod filter;
 mod fuzz;
 mod golden;

@@ -20,7 +20,7 @@ pub(in crate::cli) struct MeasureArgs {
     /// Write index.html, measure.csv and measure.json into this folder
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
-    /// Fewer angles, parameters and samples: about a minute
+    /// Fewer angles, parameters and samples: a few minutes
     #[arg(long)]
     pub quick: bool,
     /// Measure only part I of N
@@ -53,7 +53,7 @@ pub(in crate::cli) struct MeasureArgs {
     /// Samples per pixel of a picture, twice as many of its reference [default: 64, or 16 with --quick]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1 << 16))]
     pub samples: Option<u32>,
-    /// Most samples per pixel of pictures whose errors fewer do not tell [default: 16 times as many]
+    /// Most samples per pixel of pictures whose errors fewer do not tell [default: 16 times as many, or 4 times with --quick]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1 << 20))]
     pub most_samples: Option<u32>,
     /// Frames that are timed, after one that warms up [default: 7, or 5 with --quick]

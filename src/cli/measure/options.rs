@@ -112,8 +112,9 @@ impl MeasureArgs {
         }
         plan.rays = self.rays.unwrap_or(plan.rays);
         plan.size = self.size.unwrap_or(plan.size);
+        let times_as_many = plan.most_samples / plan.samples;
         plan.samples = self.samples.unwrap_or(plan.samples);
-        plan.most_samples = self.most_samples.unwrap_or(16 * plan.samples);
+        plan.most_samples = self.most_samples.unwrap_or(times_as_many * plan.samples);
         plan.rounds = self.passes.unwrap_or(plan.rounds);
         plan.seed = self.seed;
         plan

@@ -44,7 +44,7 @@ pub(super) fn summary(record: &Record) -> String {
 fn view_table(text: &mut String, record: &Record, view: &ViewFacts) {
     let _ = writeln!(
         text,
-        "\n{:.0} degrees, {} rays; * is less than ten times what halves of the samples differ by",
+        "\n{:.0} degrees, {} rays; < and > stand before ten times what halves of the samples differ by",
         view.angle_deg, view.rays
     );
     let _ = writeln!(
@@ -71,10 +71,10 @@ fn view_table(text: &mut String, record: &Record, view: &ViewFacts) {
 
 fn line(cell: &Cell) -> String {
     let g = &cell.geometry;
-    let [_, psnr, ssim, flip] = cell.picture.told();
+    let [_, psnr, ssim, flip] = cell.picture.told(&cell.picture_doubt);
     let percent = |share: f64| format!("{:.1}%", share * 100.0);
     format!(
-        "  {:<28}{:>9.3}{:>9.3}{:>8}{:>8.2}{:>8}{psnr:>8}{ssim:>8}{flip:>8}{}{:>9.1}{:>9.0}",
+        "  {:<28}{:>9.3}{:>9.3}{:>8}{:>8.2}{:>8}{psnr:>8}{ssim:>8}{flip:>8} {:>9.1}{:>9.0}",
         cell.variant.label(),
         g.uv_texels.p50,
         g.uv_texels.p95,
@@ -82,7 +82,6 @@ fn line(cell: &Cell) -> String {
         g.normal_deg.p95,
         g.shadow_disagreement
             .map_or_else(|| "-".to_owned(), percent),
-        if cell.limited_by_noise { "*" } else { " " },
         cell.cost.look_ups + cell.cost.steps,
         cell.cost.ns_per_sample.median,
     )

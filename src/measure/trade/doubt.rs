@@ -8,11 +8,11 @@ use super::PictureErrors;
 const CLEAR: f64 = 10.0;
 
 /// Errors below these are told as being below: on the average such pictures differ by less than half a step of 8 bits,
-/// which rounds to the same.
+/// which rounds to the same, and look alike.
 const LEAST: PictureErrors = PictureErrors {
     linear_rmse: 1.0 / 510.0,
     psnr_db: Some(54.15),
-    ssim: 0.999,
+    ssim: 0.99,
     flip: 0.002,
 };
 
@@ -50,8 +50,6 @@ impl PictureDoubt {
     #[must_use]
     pub fn limits(&self, errors: &PictureErrors) -> bool {
         let told = PictureErrors::worse(*errors, LEAST);
-        // Share of the root mean square by which so many decibels more would change it.
-        let share = |doubt_db: f64| 10.0_f64.powf(doubt_db / 20.0) - 1.0;
         let below = told
             .psnr_db
             .zip(errors.psnr_db)
@@ -63,33 +61,43 @@ impl PictureDoubt {
     }
 }
 
+/// Share of a root mean square by which so many decibels more or less change it.
+fn share(doubt_db: f64) -> f64 {
+    10.0_f64.powf(doubt_db / 20.0) - 1.0
+}
+
 impl PictureErrors {
-    /// Root mean square, decibels, SSIM and FLIP in words; those of pictures that are nearer than anybody sees say just
-    /// that.
+    /// Root mean square, decibels, SSIM and FLIP in words. What is less than ten times its doubt, or nearer than anybody
+    /// sees, is told as being below that.
     #[must_use]
-    pub fn told(&self) -> [String; 4] {
-        let is_same = self.psnr_db.is_none();
-        let below = |error: f64, least: f64| {
-            if error < least && !is_same {
-                format!("<{least:.3}")
+    pub fn told(&self, doubt: &PictureDoubt) -> [String; 4] {
+        let Some(db) = self.psnr_db else {
+            return ["0.000", "∞", "1.000", "0.000"].map(str::to_owned);
+        };
+        let below = |error: f64, least: f64, doubt: f64| {
+            let bound = least.max(CLEAR * doubt);
+            if error < bound {
+                format!("<{bound:.3}")
             } else {
                 format!("{error:.3}")
             }
         };
-        let least_db = LEAST.psnr_db.unwrap_or_default();
+        let nearest = LEAST.psnr_db.unwrap_or_default();
+        let known = db - (20.0 * (CLEAR * share(doubt.psnr_db)).log10()).max(0.0);
+        let ssim_bound = (1.0 - LEAST.ssim).max(CLEAR * doubt.ssim);
         [
-            below(self.linear_rmse, LEAST.linear_rmse),
-            match self.psnr_db {
-                None => "∞".to_owned(),
-                Some(db) if db > least_db => format!(">{least_db:.1}"),
-                Some(db) => format!("{db:.1}"),
+            below(self.linear_rmse, LEAST.linear_rmse, doubt.linear_rmse),
+            if db > nearest.min(known) {
+                format!(">{:.1}", nearest.min(known))
+            } else {
+                format!("{db:.1}")
             },
-            if self.ssim > LEAST.ssim && !is_same {
-                format!(">{:.3}", LEAST.ssim)
+            if 1.0 - self.ssim < ssim_bound {
+                format!(">{:.2}", 1.0 - ssim_bound)
             } else {
                 format!("{:.3}", self.ssim)
             },
-            below(self.flip, LEAST.flip),
+            below(self.flip, LEAST.flip, doubt.flip),
         ]
     }
 
@@ -167,7 +175,7 @@ mod tests {
         let known = PictureDoubt {
             linear_rmse: 0.000_19,
             psnr_db: 1.5,
-            ssim: 0.000_09,
+            ssim: 0.000_9,
             flip: 0.000_19,
         };
         assert!(!known.limits(&near));
@@ -182,7 +190,7 @@ mod tests {
                 ..known
             },
             PictureDoubt {
-                ssim: 0.000_11,
+                ssim: 0.001_1,
                 ..known
             },
             PictureDoubt {
@@ -191,13 +199,22 @@ mod tests {
             },
         ];
         assert!(doubts.iter().all(|doubt| doubt.limits(&near)));
-        assert_eq!(near.told(), ["<0.002", ">54.1", ">0.999", "<0.002"]);
-        assert_eq!(WHOLE.told(), ["0.100", "20.0", "0.500", "0.200"]);
+        assert_eq!(near.told(&known), ["<0.002", ">54.1", ">0.99", "<0.002"]);
+        let exactly = PictureDoubt::default();
+        assert_eq!(WHOLE.told(&exactly), ["0.100", "20.0", "0.500", "0.200"]);
+        let hardly = PictureDoubt {
+            linear_rmse: 0.02,
+            // Twice the root mean square.
+            psnr_db: 6.0,
+            ssim: 0.06,
+            flip: 0.03,
+        };
+        assert_eq!(WHOLE.told(&hardly), ["<0.200", ">0.0", ">0.40", "<0.300"]);
         let same = PictureErrors {
             ssim: 1.0,
             ..PictureErrors::default()
         };
-        assert_eq!(same.told(), ["0.000", "∞", "1.000", "0.000"]);
+        assert_eq!(same.told(&exactly), ["0.000", "∞", "1.000", "0.000"]);
     }
 
     #[test]

@@ -8,8 +8,7 @@ use super::{GeometricErrors, Stats};
 use crate::geometry::Ray;
 use crate::geometry::triangle::Watertight;
 use crate::math::{V2, V3, angle};
-use crate::render::{Frame, FrameLight, FrameLightKind};
-use crate::surface::displaced::Tracer;
+use crate::render::{Frame, FrameLight, FrameLightKind, Passage};
 use crate::surface::mapping::relief::is_shadowed;
 use crate::surface::{SurfaceInteraction, uv_at};
 
@@ -32,9 +31,9 @@ impl<'a> TrueView<'a> {
     /// Follows the rays of a frame that was made with the truth's settings.
     #[must_use]
     pub fn new(frame: &'a Frame<'a>, truth: Truth, sights: &Sights) -> Self {
-        let mut tracer = Tracer::default();
+        let mut passage = Passage::default();
         let land = |sight: &Sight| {
-            let landing = truth.landing(frame, sight, &mut tracer)?;
+            let landing = truth.landing(frame, sight, &mut passage)?;
             Some((*sight, landing))
         };
         let landed: Vec<_> = sights.relief.iter().filter_map(land).collect();
@@ -50,7 +49,7 @@ impl<'a> TrueView<'a> {
         view.lit = view
             .sights
             .iter()
-            .map(|seen| view.truly_lit(seen, &mut tracer))
+            .map(|seen| view.truly_lit(seen, &mut passage))
             .collect();
         view
     }
@@ -75,14 +74,14 @@ impl<'a> TrueView<'a> {
     pub fn errors(&self, frame: &Frame<'_>, outline: Option<&[bool]>) -> GeometricErrors {
         let (mut uv, mut depth, mut normal) = (Vec::new(), Vec::new(), Vec::new());
         let (mut asked, mut wrong) = (0_u64, 0_u64);
-        let mut tracer = Tracer::default();
+        let mut passage = Passage::default();
         for ((sight, landing), truly_lit) in self.sights.iter().zip(&self.lit) {
             let Some(field) = self.frame.materials[sight.material].field() else {
                 continue;
             };
             let mut s = sight.surface;
             if frame.displaced.is_some() {
-                displaced(frame, &mut s, &mut tracer);
+                displaced(frame, &mut s, &mut passage);
             } else {
                 let material = &frame.materials[sight.material];
                 material.place_baked_frame((frame.mesh, frame.tangents), &sight.hit, &mut s);
@@ -99,7 +98,7 @@ impl<'a> TrueView<'a> {
             normal.push(angle(shown, landing.normal).to_degrees());
             for (light, &truly) in frame.lights.iter().zip(truly_lit) {
                 asked += 1;
-                let lit = is_lit(frame, sight.material, &s, light, &mut tracer)
+                let lit = is_lit(frame, sight.material, &s, light, &mut passage)
                     && (frame.displaced.is_some() || !self.is_behind_mesh(sight, light));
                 wrong += u64::from(lit != truly);
             }
@@ -116,19 +115,19 @@ impl<'a> TrueView<'a> {
     }
 
     /// Which lights reach a true landing.
-    fn truly_lit(&self, (sight, landing): &(Sight, Landing), tracer: &mut Tracer) -> Vec<bool> {
+    fn truly_lit(&self, (sight, landing): &(Sight, Landing), passage: &mut Passage) -> Vec<bool> {
         let lit = |light: &FrameLight| {
             let wi = towards(light, landing.p);
             let micro = landing.micro.map(|micro| micro.normal.as_dvec3());
             let n_geo = micro.unwrap_or(sight.facet.n_geo);
             let faces = wi.dot(n_geo) > 0.0 && wi.dot(landing.normal) > 0.0;
             let distance = distance(light, landing.p.as_vec3());
-            let hides = |tracer| {
+            let hides = |passage| {
                 let seen = (sight, landing);
                 self.truth
-                    .is_shadowed(self.frame, seen, (wi, distance), tracer)
+                    .is_shadowed(self.frame, seen, (wi, distance), passage)
             };
-            faces && !(self.frame.shadows && hides(&mut *tracer))
+            faces && !(self.frame.shadows && hides(&mut *passage))
         };
         self.frame.lights.iter().map(lit).collect()
     }
@@ -156,7 +155,7 @@ fn is_lit(
     material: usize,
     s: &SurfaceInteraction,
     light: &FrameLight,
-    tracer: &mut Tracer,
+    passage: &mut Passage,
 ) -> bool {
     let wi = V3::from(towards(light, Vec3::from(s.p).as_dvec3()).as_vec3());
     if !(wi.dot(s.n_geo) > 0.0 && wi.dot(s.n_shade) > 0.0) {
@@ -166,7 +165,7 @@ fn is_lit(
         let (p, n) = (Vec3::from(s.p), Vec3::from(s.n_geo));
         let point = (p, n, s.n_geo.abs().dot(s.p_error));
         let light = (wi.into(), distance(light, p));
-        return !(frame.shadows && is_behind_relief(frame, point, light, tracer));
+        return !(frame.shadows && is_behind_relief(frame, point, light, passage));
     }
     let Some(field) = frame.materials[material].mapping.self_shadow() else {
         return true;
@@ -176,16 +175,12 @@ fn is_lit(
 }
 
 /// Moves a point to where its view ray meets the displaced surface.
-fn displaced(frame: &Frame<'_>, s: &mut SurfaceInteraction, tracer: &mut Tracer) {
-    let Some(relief) = &frame.displaced else {
-        return;
-    };
+fn displaced(frame: &Frame<'_>, s: &mut SurfaceInteraction, passage: &mut Passage) {
     let ray = Ray {
         origin: frame.camera.origin,
         dir: (-s.wo).into(),
     };
-    let mesh = relief.mesh(frame.mesh);
-    if let Some(hit) = mesh.closest(tracer, &ray, f32::INFINITY, frame.level) {
+    if let Some(hit) = passage.closest(frame, &ray, f32::INFINITY) {
         let [b1, b2] = hit.weights;
         s.uv = V2::from(uv_at(frame.mesh, hit.prim, b1, b2));
         hit.replace_point(s);

@@ -27,7 +27,7 @@ impl Record {
         let limited = self.cells.iter().filter(|c| c.limited_by_noise).count();
         if limited > 0 {
             notes.push(format!(
-                "Of the pictures, {limited} of {} have a figure that is still less than ten times what the halves of their samples differ by (`*`), with up to {} samples per pixel (`--most-samples`): read such a figure as not more than ten times its doubt.",
+                "Of the pictures, {limited} of {} have a figure that is still less than ten times what the halves of their samples differ by, with up to {} samples per pixel (`--most-samples`): it is told as being below that (`<`).",
                 self.cells.len(),
                 self.plan.most_samples
             ));

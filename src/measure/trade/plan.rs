@@ -77,7 +77,7 @@ impl Plan {
         }
     }
 
-    /// The plan of a minute.
+    /// The plan of a few minutes.
     #[must_use]
     pub fn quick() -> Self {
         Self {
@@ -88,7 +88,7 @@ impl Plan {
             rays: 2000,
             size: [256, 144],
             samples: 16,
-            most_samples: 256,
+            most_samples: 64,
             timed_size: [320, 180],
             rounds: 5,
             ..Self::full()

@@ -5,8 +5,7 @@ use super::truth::MIN_COS;
 use crate::geometry::triangle::Watertight;
 use crate::geometry::{Hit, Ray};
 use crate::math::{hash, unit_interval};
-use crate::render::Frame;
-use crate::surface::displaced::Tracer;
+use crate::render::{Frame, Passage};
 use crate::surface::{SurfaceInteraction, SurfaceParts, surface_at};
 
 /// A view ray that shows a relief from its front.
@@ -75,12 +74,9 @@ impl<'a> Pinhole<'a> {
     }
 
     /// Whether the ray through a place of the picture hits anything, of a displaced surface where there is one.
-    fn is_covered(&self, place: [f32; 2], tracer: &mut Tracer) -> bool {
+    fn is_covered(&self, place: [f32; 2], passage: &mut Passage) -> bool {
         let (frame, ray) = (self.frame, self.ray(place));
-        let displaced = frame.displaced.as_ref().is_some_and(|relief| {
-            let mesh = relief.mesh(frame.mesh);
-            mesh.blocks(tracer, &ray, f32::INFINITY, frame.level)
-        });
+        let displaced = passage.is_blocked(frame, &ray, f32::INFINITY);
         let stays = |prim: u32, u: f32, v: f32| {
             !frame.displaces(frame.mesh.attributes[prim as usize]) && frame.is_solid(prim, u, v)
         };
@@ -125,14 +121,14 @@ impl<'a> Pinhole<'a> {
         let rows = (count / columns).max(1);
         let mut relief = Vec::new();
         let mut outline = Vec::new();
-        let (frame, mut tracer) = (self.frame, Tracer::default());
+        let (frame, mut passage) = (self.frame, Passage::default());
         for cell in 0..columns * rows {
             let random = |k: u32| unit_interval(hash(hash(seed.wrapping_add(k)) ^ cell));
             let x = ((cell % columns) as f32 + random(0)) / columns as f32 * width;
             let y = ((cell / columns) as f32 + random(0x9e37_79b9)) / rows as f32 * height;
             let seen = self.look([x, y]);
             outline.push(match frame.displaced {
-                Some(_) => self.is_covered([x, y], &mut tracer),
+                Some(_) => self.is_covered([x, y], &mut passage),
                 None => seen.is_some(),
             });
             relief.extend(seen.flatten());

@@ -8,8 +8,8 @@ use super::facet::Facet;
 use super::sights::Sight;
 use super::subject::with_mapping;
 use crate::geometry::Ray;
-use crate::render::{Frame, Snapshot};
-use crate::surface::displaced::{SurfaceHit, Tracer};
+use crate::render::{Frame, Passage, Snapshot};
+use crate::surface::displaced::SurfaceHit;
 use crate::surface::mapping::relief::{LIFT, ReliefField, ReliefRay};
 use crate::surface::mapping::{Derivative, Lookup, MappingSettings, Method};
 use crate::texture::Wrap;
@@ -101,11 +101,16 @@ impl Truth {
 
     /// Where a view ray lands; `None` where it looks along the surface or at its back, or passes the true surface.
     #[must_use]
-    pub fn landing(self, frame: &Frame<'_>, sight: &Sight, tracer: &mut Tracer) -> Option<Landing> {
+    pub fn landing(
+        self,
+        frame: &Frame<'_>,
+        sight: &Sight,
+        passage: &mut Passage,
+    ) -> Option<Landing> {
         let field = frame.materials[sight.material].field()?;
         match self {
             Self::Walk => walked(field, &sight.facet),
-            Self::Displaced => displaced(frame, field, sight, tracer),
+            Self::Displaced => displaced(frame, field, sight, passage),
         }
     }
 
@@ -117,7 +122,7 @@ impl Truth {
         frame: &Frame<'_>,
         (sight, landing): (&Sight, &Landing),
         (wi, distance): (DVec3, f32),
-        tracer: &mut Tracer,
+        passage: &mut Passage,
     ) -> bool {
         match self {
             Self::Walk => {
@@ -126,7 +131,7 @@ impl Truth {
             }
             Self::Displaced => landing.micro.is_some_and(|micro| {
                 let point = (micro.p, micro.normal, micro.bound);
-                is_behind_relief(frame, point, (wi.as_vec3(), distance), tracer)
+                is_behind_relief(frame, point, (wi.as_vec3(), distance), passage)
             }),
         }
     }
@@ -138,14 +143,9 @@ pub fn is_behind_relief(
     frame: &Frame<'_>,
     (p, n, bound): (Vec3, Vec3, f32),
     (wi, distance): (Vec3, f32),
-    tracer: &mut Tracer,
+    passage: &mut Passage,
 ) -> bool {
-    let Some(relief) = &frame.displaced else {
-        return false;
-    };
-    let ray = Ray::leaving((p, bound, n), wi);
-    let mesh = relief.mesh(frame.mesh);
-    mesh.blocks(tracer, &ray, distance, frame.level)
+    passage.is_blocked(frame, &Ray::leaving((p, bound, n), wi), distance)
 }
 
 /// The view ray against the displaced surface, then on to the surface between its micro-triangles.
@@ -153,7 +153,7 @@ fn displaced(
     frame: &Frame<'_>,
     field: &ReliefField<'_>,
     sight: &Sight,
-    tracer: &mut Tracer,
+    passage: &mut Passage,
 ) -> Option<Landing> {
     let facet = &sight.facet;
     let mesh = frame.displaced.as_ref()?.mesh(frame.mesh);
@@ -161,7 +161,7 @@ fn displaced(
         origin: frame.camera.origin,
         dir: (-sight.surface.wo).into(),
     };
-    let hit = mesh.closest(tracer, &ray, f32::INFINITY, frame.level)?;
+    let hit = passage.closest(frame, &ray, f32::INFINITY)?;
     let found = mesh.smooth_hit(&ray, &hit)?;
     let mut uv = found.point.uv;
     let turns = field.height.addressing.scale.as_dvec2();

@@ -1,7 +1,7 @@
 //! Rays → hits where surfaces are truly displaced: geometry of its own, beside the triangles that are not.
 
 use super::super::frame::FrameDisplacement;
-use super::super::{Counters, Frame};
+use super::super::{Counters, Frame, Passage};
 use super::trace::{plain_any_hits, plain_closest_hits};
 use super::{Column, PLACES, Places, Rays, Shadows};
 use crate::geometry::{HitLanes, NO_HIT};
@@ -28,8 +28,14 @@ pub fn closest_hits(
     let mut lanes = hits.displaced.take().unwrap_or_default();
     lanes.places = Places::EMPTY;
     let ends = rays.lanes.t_max;
+    let mut passage = Passage::default();
     for (index, place) in places.iter().enumerate() {
-        if let Some(hit) = tracer.hit(mesh, index) {
+        let mut hit = tracer.hit(mesh, index);
+        if displaced.has_holes {
+            let (ray, t_max) = (rays.lanes.ray(place), ends.0[place]);
+            hit = hit.and_then(|hit| passage.past_holes(frame, &ray, t_max, hit));
+        }
+        if let Some(hit) = hit {
             lanes.put(place, hit.p, hit.normal, hit.bound);
             lanes.prim.0[place] = hit.prim;
             lanes.weights[0].0[place] = hit.weights[0];
@@ -37,6 +43,7 @@ pub fn closest_hits(
             rays.lanes.t_max.0[place] = hit.t;
         }
     }
+    count_passage(&passage, counters);
     if displaced.displacement.has_plain() {
         plain_closest_hits(frame, rays, hits, counters);
     } else {
@@ -76,11 +83,25 @@ pub fn any_hits(
     }
     tracer.run_until(mesh, Search::Any, frame.level, &|| frame.stop.now());
     counters.relief_steps += tracer.steps();
+    let mut passage = Passage::default();
     for (index, place) in places.iter().enumerate() {
-        if tracer.is_hit(index) {
+        let mut blocked = tracer.is_hit(index);
+        if blocked && displaced.has_holes {
+            // Whatever came first may be a hole; which of all comes first was not asked.
+            let (ray, t_max) = (shadows.rays.ray(place), shadows.rays.t_max.0[place]);
+            blocked = passage.is_blocked(frame, &ray, t_max);
+        }
+        if blocked {
             shadows.occluded.insert(place);
         }
     }
+    count_passage(&passage, counters);
+}
+
+fn count_passage(passage: &Passage, counters: &mut Counters) {
+    counters.relief_steps += passage.steps;
+    counters.cutout_tests += passage.tests;
+    counters.texture_fetches += passage.tests;
 }
 
 /// The places whose rays have a length.

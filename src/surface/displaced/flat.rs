@@ -11,6 +11,9 @@ use crate::surface::mapping::relief::{ReliefField, ReliefRay, Side};
 /// A thousandth of what a float can tell.
 const OVERLAP: f64 = 1e-10;
 
+/// More than what a dozen operations in doubles round by, as a share of the largest number among them.
+const ROUNDING: f64 = 1e-14;
+
 /// One relief over a flat chart, with the axes of its own: weights of the second and third corner, and the
 /// displacement along the normal.
 #[derive(Debug, Clone, Copy)]
@@ -79,7 +82,9 @@ impl<'a, 'm> FlatPrism<'a, 'm> {
         let [b1, b2, z] = self.rows.map(|row| row.dot(o));
         let [r1, r2, rz] = self.rows.map(|row| row.dot(d));
         let [low, high] = self.field.range();
-        let margin = (high - low) * 1e-6 + (high.abs() + low.abs()) * 1e-12;
+        // And more than the displacement of a place is rounded by: a relief without any would be passed.
+        let rounding = self.rows[2].abs().dot(o.abs()) * ROUNDING;
+        let margin = (high - low) * 1e-6 + (high.abs() + low.abs()) * 1e-12 + rounding;
         let inside = [
             (b1 + OVERLAP, r1),
             (b2 + OVERLAP, r2),
@@ -120,7 +125,10 @@ impl<'a, 'm> FlatPrism<'a, 'm> {
 
     /// Everything about the point that the ray meets at distance `t`.
     pub fn hit(&self, ray: &Ray, t: f64) -> SurfaceHit {
-        let p = ray.origin.as_dvec3() + ray.dir.as_dvec3() * t;
+        let way = ray.dir.as_dvec3() * t;
+        let p = ray.origin.as_dvec3() + way;
+        // What the walk and this rounded. Next to a plane through the origin floats tell more than that.
+        let rounding = (ray.origin.as_dvec3().abs() + way.abs()) * ROUNDING;
         let o = p - self.origin;
         let (b1, b2) = (self.rows[0].dot(o), self.rows[1].dot(o));
         let [slope_x, slope_y] = self.field.slope(self.texels(b1, b2));
@@ -136,8 +144,8 @@ impl<'a, 'm> FlatPrism<'a, 'm> {
             prim: self.prim,
             weights: [b1 as f32, b2 as f32],
             p,
-            // The point is rounded once, after doubles.
-            bound: p.abs().dot(normal.abs()) * f32::EPSILON,
+            // And the point once more.
+            bound: (p.abs() * f32::EPSILON + rounding.as_vec3()).dot(normal.abs()),
             normal,
         }
     }

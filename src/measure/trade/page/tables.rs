@@ -78,7 +78,7 @@ pub(super) fn all_methods(html: &mut String, record: &Record) {
     push(
         html,
         "<p><small>Amplitude and bits of the map's own. Two figures with a stroke: median and 95th percentile. \
-         Green: no other method is both cheaper and nearer in texels. *: less than ten times what the halves of the samples differ by, to be read as the most that it can be. \
+         Green: no other method is both cheaper and nearer in texels. &lt; and &gt;: nearer than this, which is ten times what halves of the samples differ by, or less than 8 bits show. \
          In brackets: the fastest and the slowest frame.</small></p>",
     );
     let cells = usual_cells(record);
@@ -105,15 +105,16 @@ pub(super) fn all_methods(html: &mut String, record: &Record) {
 
 fn row(cell: &Cell, is_front: bool) -> String {
     let (g, p, c) = (&cell.geometry, &cell.picture, &cell.cost);
-    let mark = if cell.limited_by_noise { "*" } else { "" };
     // Less-than signs that are no markup.
-    let [rmse, psnr, ssim, flip] = p.told().map(|told| told.replace('<', "&lt;"));
+    let [rmse, psnr, ssim, flip] = p
+        .told(&cell.picture_doubt)
+        .map(|told| told.replace('<', "&lt;"));
     let shadows = g
         .shadow_disagreement
         .map_or_else(|| "–".to_owned(), |s| format!("{:.1} %", s * 100.0));
     let class = if is_front { " class=\"front\"" } else { "" };
     format!(
-        "<tr{class}><td class=\"word\">{}</td><td>{}</td><td>{:.1} %</td><td>{}</td><td>{}</td><td>{shadows}</td><td>{rmse}{mark}</td><td>{psnr}</td><td>{ssim}</td><td>{flip}{mark}</td><td>{:.1} + {:.1}</td><td>{:.2}</td><td>{:.0} ({:.0}–{:.0})</td><td>{}</td></tr>",
+        "<tr{class}><td class=\"word\">{}</td><td>{}</td><td>{:.1} %</td><td>{}</td><td>{}</td><td>{shadows}</td><td>{rmse}</td><td>{psnr}</td><td>{ssim}</td><td>{flip}</td><td>{:.1} + {:.1}</td><td>{:.2}</td><td>{:.0} ({:.0}–{:.0})</td><td>{}</td></tr>",
         cell.variant.label(),
         g.uv_texels.short(),
         g.wrong_texel_share * 100.0,
