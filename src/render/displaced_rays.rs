@@ -4,7 +4,7 @@ use super::Frame;
 use crate::geometry::Ray;
 use crate::surface::displaced::{SurfaceHit, Tracer};
 
-/// A ray goes through so many holes at the most: some seconds of foliage.
+/// A ray goes through so many holes at the most: more layers than foliage has.
 const MOST_HOLES: usize = 256;
 
 /// Follows rays through holes. Keeps its lists, so that only the first ray allocates.

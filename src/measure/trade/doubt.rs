@@ -66,6 +66,11 @@ fn share(doubt_db: f64) -> f64 {
     10.0_f64.powf(doubt_db / 20.0) - 1.0
 }
 
+/// The next multiple of `1 / steps` below, or this if it is one to within rounding.
+fn rounded_down(value: f64, steps: f64) -> f64 {
+    (value * steps + 1e-6).floor() / steps
+}
+
 impl PictureErrors {
     /// Root mean square, decibels, SSIM and FLIP in words. What is less than ten times its doubt, or nearer than anybody
     /// sees, is told as being below that.
@@ -74,26 +79,27 @@ impl PictureErrors {
         let Some(db) = self.psnr_db else {
             return ["0.000", "∞", "1.000", "0.000"].map(str::to_owned);
         };
+        // Bounds are rounded away from what they bound.
         let below = |error: f64, least: f64, doubt: f64| {
             let bound = least.max(CLEAR * doubt);
             if error < bound {
-                format!("<{bound:.3}")
+                format!("<{:.3}", -rounded_down(-bound, 1e3))
             } else {
                 format!("{error:.3}")
             }
         };
-        let nearest = LEAST.psnr_db.unwrap_or_default();
         let known = db - (20.0 * (CLEAR * share(doubt.psnr_db)).log10()).max(0.0);
-        let ssim_bound = (1.0 - LEAST.ssim).max(CLEAR * doubt.ssim);
+        let db_bound = known.min(LEAST.psnr_db.unwrap_or_default());
+        let ssim_bound = LEAST.ssim.min(1.0 - CLEAR * doubt.ssim);
         [
             below(self.linear_rmse, LEAST.linear_rmse, doubt.linear_rmse),
-            if db > nearest.min(known) {
-                format!(">{:.1}", nearest.min(known))
+            if db > db_bound {
+                format!(">{:.1}", rounded_down(db_bound, 10.0))
             } else {
                 format!("{db:.1}")
             },
-            if 1.0 - self.ssim < ssim_bound {
-                format!(">{:.2}", 1.0 - ssim_bound)
+            if self.ssim > ssim_bound {
+                format!(">{:.2}", rounded_down(ssim_bound, 100.0))
             } else {
                 format!("{:.3}", self.ssim)
             },
@@ -210,6 +216,12 @@ mod tests {
             flip: 0.03,
         };
         assert_eq!(WHOLE.told(&hardly), ["<0.200", ">0.0", ">0.40", "<0.300"]);
+        // Rounded to the nearest, 0.2104 would not be below.
+        let beside = PictureDoubt {
+            flip: 0.021_04,
+            ..exactly
+        };
+        assert_eq!(WHOLE.told(&beside)[3], "<0.211");
         let same = PictureErrors {
             ssim: 1.0,
             ..PictureErrors::default()
