@@ -15,6 +15,7 @@ mod slabs;
 mod tangents;
 pub mod triangle;
 mod uv_charts;
+mod uv_outline;
 
 /// The vector instructions that trees are traced with.
 pub use crate::math::simd;
@@ -29,4 +30,4 @@ pub use ray::{
 };
 pub use slabs::RaySlabs;
 pub use tangents::{Tangent, TangentCell, Tangents};
-pub use uv_charts::{UvBox, UvChartCell, UvCharts};
+pub use uv_charts::{UvBox, UvChart, UvChartCell, UvCharts};

@@ -3,10 +3,40 @@
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
-use glam::{Vec2, Vec3};
+use glam::{DVec2, Vec2, Vec3};
 
 use super::TriangleMesh;
+use super::uv_outline::UvOutline;
 use crate::math::{Groups, V2};
+
+/// A chart: where on the texture its triangles lie.
+#[derive(Debug)]
+pub struct UvChart {
+    /// The rectangle around it.
+    pub around: UvBox,
+    /// Its shape, if it is not that rectangle.
+    outline: Option<UvOutline>,
+}
+
+impl UvChart {
+    /// Whether a texture coordinate is in it, its border included. NaN is not.
+    #[must_use]
+    pub fn contains(&self, uv: V2) -> bool {
+        let is_inside =
+            |outline: &UvOutline| outline.contains(DVec2::new(f64::from(uv.x), f64::from(uv.y)));
+        self.around.contains(uv) && self.outline.as_ref().is_none_or(is_inside)
+    }
+
+    /// How far a ray that starts inside at `uv` and changes by `rate` stays in it; infinite if it does not move.
+    #[must_use]
+    pub fn exit(&self, uv: [f32; 2], rate: [f32; 2]) -> f64 {
+        let end = self.around.exit(uv, rate);
+        let [from, way] = [uv, rate].map(|v| DVec2::from_array(v.map(f64::from)));
+        self.outline
+            .as_ref()
+            .map_or(end, |outline| outline.exit(from, way, end))
+    }
+}
 
 /// The charts of a mesh. Triangles with a common corner, the same place with the same texture coordinate, are of
 /// one chart.
@@ -14,7 +44,7 @@ use crate::math::{Groups, V2};
 pub struct UvCharts {
     /// The chart of each triangle.
     of: Vec<u32>,
-    boxes: Vec<UvBox>,
+    charts: Vec<UvChart>,
 }
 
 /// A rectangle of texture coordinates.
@@ -67,45 +97,65 @@ impl UvCharts {
             groups.join(a, c);
         }
         let mut numbers = HashMap::new();
-        let mut boxes = Vec::new();
+        let mut charts: Vec<Vec<([u32; 3], [Vec2; 3])>> = Vec::new();
         let mut of = Vec::with_capacity(mesh.len());
         for triangle in &mesh.indices {
             let chart = *numbers
                 .entry(groups.root(corners[triangle[0] as usize]))
                 .or_insert_with(|| {
-                    boxes.push(UvBox::EMPTY);
-                    boxes.len() - 1
+                    charts.push(Vec::new());
+                    charts.len() - 1
                 });
-            for vertex in triangle {
-                let uv = mesh.uvs[*vertex as usize];
-                let UvBox { low, high } = &mut boxes[chart];
-                (*low, *high) = (low.min(uv), high.max(uv));
-            }
+            let uv = triangle.map(|vertex| mesh.uvs[vertex as usize]);
+            charts[chart].push((triangle.map(|vertex| corners[vertex as usize]), uv));
             of.push(chart as u32);
         }
-        Self { of, boxes }
+        let charts = charts.iter().map(|triangles| {
+            let uvs = triangles.iter().flat_map(|(_, uv)| uv);
+            let around = uvs.fold(UvBox::EMPTY, |UvBox { low, high }, uv| UvBox {
+                low: low.min(*uv),
+                high: high.max(*uv),
+            });
+            UvChart {
+                outline: UvOutline::new(&around, triangles),
+                around,
+            }
+        });
+        Self {
+            charts: charts.collect(),
+            of,
+        }
+    }
+
+    /// The chart of a triangle.
+    #[must_use]
+    pub fn chart(&self, prim: u32) -> &UvChart {
+        &self.charts[self.of[prim as usize] as usize]
     }
 
     /// The rectangle around the chart of a triangle.
     #[must_use]
     pub fn around(&self, prim: u32) -> &UvBox {
-        &self.boxes[self.of[prim as usize] as usize]
+        &self.chart(prim).around
     }
 
     /// How many there are.
     #[must_use]
     pub const fn len(&self) -> usize {
-        self.boxes.len()
+        self.charts.len()
     }
 
     /// Whether there are none.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
-        self.boxes.is_empty()
+        self.charts.is_empty()
     }
 
     fn bytes(&self) -> usize {
-        size_of_val(self.of.as_slice()) + size_of_val(self.boxes.as_slice())
+        let outlines = self.charts.iter().filter_map(|c| c.outline.as_ref());
+        size_of_val(self.of.as_slice())
+            + size_of_val(self.charts.as_slice())
+            + outlines.map(UvOutline::bytes).sum::<usize>()
     }
 }
 

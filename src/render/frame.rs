@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::material::{BoundOpacity, FrameMaterial};
 use super::{Snapshot, Stop};
 use crate::geometry::bvh::Bvh;
-use crate::geometry::{Hit, Ray, TangentCell, TriangleAttributes, TriangleMesh, UvBox, UvCharts};
+use crate::geometry::{Hit, Ray, TangentCell, TriangleAttributes, TriangleMesh, UvChart, UvCharts};
 use crate::math::simd::SimdLevel;
 use crate::math::{LinearRgb, Real, V3};
 use crate::scene::{Background, BentNormals, Scene, ShadingModel, TextureFilter};
@@ -184,8 +184,8 @@ impl<'a> Frame<'a> {
     /// The chart of a triangle that its relief ends with.
     #[inline]
     #[must_use]
-    pub fn border(&self, prim: u32) -> Option<&'a UvBox> {
-        self.charts.map(|charts| charts.around(prim))
+    pub fn border(&self, prim: u32) -> Option<&'a UvChart> {
+        self.charts.map(|charts| charts.chart(prim))
     }
 
     /// Whether a ray in the direction `dir` leaves the relief over a triangle by the border of its chart, so that

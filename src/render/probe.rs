@@ -11,7 +11,7 @@ use super::stages::{
 };
 use super::{Counters, Frame, Passage, Snapshot};
 use crate::geometry::triangle::Watertight;
-use crate::geometry::{Hit, Ray, UvBox, offset_by_bound};
+use crate::geometry::{Hit, Ray, UvChart, offset_by_bound};
 use crate::math::{LinearRgb, V3, angle, gamma, srgb8_from_linear};
 use crate::scene::BentNormals;
 use crate::shading::softened_horizon;
@@ -384,7 +384,7 @@ struct LitPoint<'a> {
     smoothed: Option<SmoothedPoint>,
     material: usize,
     /// Of the relief that it is on.
-    border: Option<&'a UvBox>,
+    border: Option<&'a UvChart>,
     diffuse: LinearRgb,
     slope_variance: Option<f32>,
 }
@@ -487,7 +487,7 @@ fn is_shadowed_by_relief(
     frame: &Frame<'_>,
     s: &SurfaceInteraction,
     wi: V3,
-    (material, border): (usize, Option<&UvBox>),
+    (material, border): (usize, Option<&UvChart>),
 ) -> bool {
     let field = frame.materials[material].mapping.self_shadow();
     field.filter(|_| s.steps > 0.0).is_some_and(|field| {

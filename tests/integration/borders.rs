@@ -1,6 +1,9 @@
 //! Reliefs that end at the border of their chart: against the sunk floor that one must see through the opening.
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec2};
+use reliefscope::geometry::bvh::Bvh;
 use reliefscope::geometry::{UvBox, UvCharts};
 use reliefscope::render::{Snapshot, Visibility, probe};
 use reliefscope::surface::mapping::Method;
@@ -104,6 +107,42 @@ fn rays_see_the_floor_through_the_opening_or_go_on() {
         assert!(
             shadowed > 20 || !method.searches(),
             "{method:?}: {shadowed}"
+        );
+    }
+}
+
+#[test]
+fn a_relief_ends_with_a_chart_that_is_no_rectangle() {
+    for method in [Method::Parallax, Method::Relief, Method::Exact] {
+        let mut snapshot = sunk(method);
+        let scene = Arc::get_mut(&mut snapshot.scene).expect("nobody else has it");
+        // The half of the larger quad below the diagonal.
+        scene.mesh.indices.truncate(1);
+        scene.mesh.attributes.truncate(1);
+        scene.bvh = Bvh::build(&scene.mesh);
+        let film = picture(&snapshot);
+        let [mut seen, mut past] = [0; 2];
+        for (x, y) in (0..40).flat_map(|y| (0..48).map(move |x| (x, y))) {
+            let story = probe(&snapshot, [x, y]).expect("inside");
+            let what = format!("{method:?} at {x}, {y}\n{story}");
+            assert_eq!(story.color, film.at(x, y), "{what}");
+            let bounce = &story.bounces[0];
+            let dir = DVec3::from(bounce.dir.map(f64::from));
+            let inside = |z: f64| {
+                let (p, square) = crossing(DVec3::from(bounce.origin), dir, z, QUADS[1].0);
+                square.min((p.x - p.y) * 0.5_f64.sqrt())
+            };
+            let (opening, floor) = (inside(0.0), inside(-DEPTH));
+            if dir.z > -1e-3 || opening.abs() < 1e-3 || floor.abs() < 1e-3 {
+                continue;
+            }
+            assert_eq!(bounce.hit.is_some(), opening.min(floor) > 0.0, "{what}");
+            seen += usize::from(bounce.hit.is_some());
+            past += usize::from(opening > 0.0 && floor < 0.0);
+        }
+        assert!(
+            seen > 100 && past > 30,
+            "{method:?}: {seen} seen, {past} past"
         );
     }
 }

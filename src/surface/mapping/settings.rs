@@ -74,8 +74,8 @@ pub struct MappingSettings {
     pub use_normal: bool,
     /// Whether parallax methods move texture coordinates.
     pub use_parallax: bool,
-    /// Whether there is no surface where a method moves the texture coordinate out of the rectangle around its chart,
-    /// so that the relief ends in a silhouette.
+    /// Whether there is no surface where a method moves the texture coordinate out of its chart, so that the relief ends
+    /// in a silhouette.
     pub cut_at_border: bool,
     /// Whether true displacement takes the mean height along edges at which texture coordinates jump, so that
     /// no crack opens there.

@@ -2,7 +2,7 @@
 
 use super::walk::{ReliefField, ReliefRay, Walk};
 use super::{Found, shell::Shell};
-use crate::geometry::UvBox;
+use crate::geometry::UvChart;
 use crate::math::{Real, V2, V3};
 use crate::surface::SurfaceInteraction;
 
@@ -106,7 +106,7 @@ pub fn landed(
 #[inline(always)]
 pub fn is_shadowed<F: Real>(
     field: &ReliefField<'_>,
-    border: Option<&UvBox>,
+    border: Option<&UvChart>,
     wanted: F::Mask,
     (uv, gradients, n): (V2<F>, [V3<F>; 2], V3<F>),
     wi: V3<F>,
@@ -134,7 +134,7 @@ pub fn light_ray<F: Real>(gradients: [V3<F>; 2], n: V3<F>, wi: V3<F>) -> (V2<F>,
 #[inline(never)]
 fn walk_up(
     field: &ReliefField<'_>,
-    border: Option<&UvBox>,
+    border: Option<&UvChart>,
     uv: [f32; 2],
     per_z: [f32; 2],
 ) -> [f32; 2] {
@@ -150,7 +150,7 @@ fn walk_up(
 #[must_use]
 pub fn rising_ray(
     field: &ReliefField<'_>,
-    border: Option<&UvBox>,
+    border: Option<&UvChart>,
     uv: [f32; 2],
     per_z: [f32; 2],
 ) -> Option<ReliefRay> {
