@@ -27,14 +27,18 @@ impl UvChart {
         self.around.contains(uv) && self.outline.as_ref().is_none_or(is_inside)
     }
 
-    /// How far a ray that starts inside at `uv` and changes by `rate` stays in it; infinite if it does not move.
+    /// How far a ray that starts inside at `uv` and changes by `rate` stays in it; infinite if it does not move. Beyond
+    /// `most` nobody wants to know: then this may be anything beyond.
     #[must_use]
-    pub fn exit(&self, uv: [f32; 2], rate: [f32; 2]) -> f64 {
+    pub fn exit(&self, uv: [f32; 2], rate: [f32; 2], most: f64) -> f64 {
         let end = self.around.exit(uv, rate);
+        let Some(outline) = &self.outline else {
+            return end;
+        };
         let [from, way] = [uv, rate].map(|v| DVec2::from_array(v.map(f64::from)));
-        self.outline
-            .as_ref()
-            .map_or(end, |outline| outline.exit(from, way, end))
+        let asked = end.min(most);
+        let left = outline.exit(from, way, asked);
+        if left < asked { left } else { end }
     }
 }
 
@@ -131,12 +135,6 @@ impl UvCharts {
     #[must_use]
     pub fn chart(&self, prim: u32) -> &UvChart {
         &self.charts[self.of[prim as usize] as usize]
-    }
-
-    /// The rectangle around the chart of a triangle.
-    #[must_use]
-    pub fn around(&self, prim: u32) -> &UvBox {
-        &self.chart(prim).around
     }
 
     /// How many there are.

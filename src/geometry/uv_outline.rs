@@ -12,11 +12,13 @@ const MOST_ROWS: usize = 1024;
 /// Part of the chart's size that a ray is followed over an edge to see whether the chart goes on there.
 const BEYOND: f64 = 1e-9;
 
+/// On the average a triangle reaches into so many rows at the most, and one more.
+const ROWS_EACH: f64 = 4.0;
+
 /// The triangles of a chart on the texture, and the edges that only one of them has.
 #[derive(Debug)]
 pub struct UvOutline {
-    low: f64,
-    rows_per_v: f64,
+    scale: RowScale,
     triangles: Rows<[DVec2; 3]>,
     edges: Rows<[DVec2; 2]>,
 }
@@ -29,10 +31,8 @@ impl UvOutline {
         let of = |uv: &[Vec2; 3]| uv.map(|uv| uv.as_dvec2());
         let areas = || triangles.iter().map(|(_, uv)| area(of(uv)));
         let size = (around.high - around.low).as_dvec2();
-        let (sum, turned) = (
-            areas().sum::<f64>().abs(),
-            areas().map(f64::abs).sum::<f64>(),
-        );
+        let sum = areas().sum::<f64>().abs();
+        let turned = areas().map(f64::abs).sum::<f64>();
         let whole = size.x * size.y;
         let is_near = |area: f64| (area - whole).abs() <= 1e-6 * whole;
         // Nothing to tell apart in what is no number, either.
@@ -49,31 +49,22 @@ impl UvOutline {
             .flat_map(|(corners, uv)| sides(*corners).into_iter().zip(sides(of(uv))))
             .filter(open)
             .map(|(_, edge)| edge);
-        let count = triangles.len().clamp(1, MOST_ROWS);
-        let low = f64::from(around.low.y);
-        let rows_per_v = if size.y > 0.0 {
-            count as f64 / size.y
-        } else {
-            0.0
-        };
-        let row = |v: f64| ((v - low) * rows_per_v).clamp(0.0, (count - 1) as f64) as usize;
+        let heights = triangles.iter().map(|(_, uv)| {
+            let [a, b, c] = uv.map(|uv| f64::from(uv.y));
+            a.max(b).max(c) - a.min(b).min(c)
+        });
+        let scale = RowScale::new(around, triangles.len(), heights.sum());
         Some(Self {
-            low,
-            rows_per_v,
-            triangles: Rows::new(count, triangles.iter().map(|(_, uv)| of(uv)), &row),
-            edges: Rows::new(count, edges, &row),
+            scale,
+            triangles: Rows::new(scale, triangles.iter().map(|(_, uv)| of(uv))),
+            edges: Rows::new(scale, edges),
         })
-    }
-
-    fn row(&self, v: f64) -> usize {
-        let last = self.triangles.len() - 1;
-        ((v - self.low) * self.rows_per_v).clamp(0.0, last as f64) as usize
     }
 
     /// Whether a texture coordinate is in one of the triangles, its border included. NaN is not.
     #[must_use]
     pub fn contains(&self, uv: DVec2) -> bool {
-        let triangles = self.triangles.row(self.row(uv.y));
+        let triangles = self.triangles.row(self.scale.row(uv.y));
         triangles.iter().any(|&triangle| is_inside(triangle, uv))
     }
 
@@ -83,9 +74,9 @@ impl UvOutline {
         if !end.is_finite() {
             return end;
         }
-        let ends = [from.y, from.y + rate.y * end].map(|v| self.row(v));
+        let ends = [from.y, from.y + rate.y * end].map(|v| self.scale.row(v));
         let rows = ends[0].min(ends[1])..=ends[0].max(ends[1]);
-        let step = BEYOND / (rate.length() * self.rows_per_v.max(f64::MIN_POSITIVE));
+        let step = BEYOND / (rate.length() * self.scale.rows_per_v.max(f64::MIN_POSITIVE));
         // From edge to edge; few lie on the way.
         let mut gone = f64::NEG_INFINITY;
         loop {
@@ -108,6 +99,39 @@ impl UvOutline {
     }
 }
 
+/// Rows of equal height over a chart.
+#[derive(Debug, Clone, Copy)]
+struct RowScale {
+    low: f64,
+    rows_per_v: f64,
+    count: usize,
+}
+
+impl RowScale {
+    /// For so many triangles, whose heights add up to `heights`. Where these are tall there are few rows, or each
+    /// would be in hundreds of them.
+    fn new(around: &UvBox, triangles: usize, heights: f64) -> Self {
+        let height = f64::from(around.high.y) - f64::from(around.low.y);
+        let each = ROWS_EACH * triangles as f64 * height / heights;
+        let count = (each as usize).clamp(1, triangles.clamp(1, MOST_ROWS));
+        Self {
+            low: f64::from(around.low.y),
+            rows_per_v: if height > 0.0 {
+                count as f64 / height
+            } else {
+                0.0
+            },
+            count,
+        }
+    }
+
+    /// The row of a v; beyond the chart the nearest.
+    fn row(self, v: f64) -> usize {
+        let last = (self.count - 1) as f64;
+        ((v - self.low) * self.rows_per_v).clamp(0.0, last) as usize
+    }
+}
+
 /// Things by the rows that they reach into.
 #[derive(Debug)]
 struct Rows<T> {
@@ -117,11 +141,11 @@ struct Rows<T> {
 }
 
 impl<T: Copy + AsRef<[DVec2]>> Rows<T> {
-    fn new(count: usize, things: impl Iterator<Item = T>, row: &dyn Fn(f64) -> usize) -> Self {
-        let mut rows = vec![Vec::new(); count];
+    fn new(scale: RowScale, things: impl Iterator<Item = T>) -> Self {
+        let mut rows = vec![Vec::new(); scale.count];
         for thing in things {
-            let reached = thing.as_ref().iter().map(|corner| row(corner.y));
-            let (first, last) = reached.fold((count - 1, 0), |(low, high), row| {
+            let reached = thing.as_ref().iter().map(|corner| scale.row(corner.y));
+            let (first, last) = reached.fold((scale.count - 1, 0), |(low, high), row| {
                 (low.min(row), high.max(row))
             });
             for row in &mut rows[first..=last] {
@@ -146,10 +170,6 @@ impl<T: Copy + AsRef<[DVec2]>> Rows<T> {
 }
 
 impl<T> Rows<T> {
-    const fn len(&self) -> usize {
-        self.starts.len() - 1
-    }
-
     const fn bytes(&self) -> usize {
         size_of_val(self.starts.as_slice()) + size_of_val(self.things.as_slice())
     }
@@ -234,6 +254,25 @@ mod tests {
             }
         }
         assert!(inner > 100, "{inner}");
+    }
+
+    #[test]
+    fn tall_triangles_are_not_kept_in_every_row() {
+        let corner = |i: u32| Vec2::new((i / 2) as f32, (i % 2) as f32);
+        let strip = |i| [i, i + 1, i + 2];
+        // Every other one is left out, so that they fill no rectangle.
+        let triangles: Vec<_> = (0..2000)
+            .map(|i| strip(2 * i))
+            .map(|corners| (corners, corners.map(corner)))
+            .collect();
+        let around = UvBox {
+            low: Vec2::ZERO,
+            high: Vec2::new(2000.0, 1.0),
+        };
+        let outline = UvOutline::new(&around, &triangles).expect("half is missing");
+        assert!(outline.triangles.things.len() <= 5 * triangles.len());
+        assert!(outline.contains(DVec2::new(0.4, 0.4)));
+        assert!(!outline.contains(DVec2::new(0.6, 0.9)));
     }
 
     #[test]

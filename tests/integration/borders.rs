@@ -202,8 +202,8 @@ fn a_chart_is_what_shares_corners() {
     let snapshot = sunk(Method::Exact);
     let charts = UvCharts::new(&snapshot.scene.mesh);
     assert_eq!(charts.len(), 2, "two quads");
-    let [large, small] = [0, 3].map(|prim| *charts.around(prim));
-    assert_eq!(charts.around(1), &large);
+    let [large, small] = [0, 3].map(|prim| charts.chart(prim).around);
+    assert_eq!(charts.chart(1).around, large);
     let square = |low: f32, high: f32| UvBox {
         low: Vec2::splat(low),
         high: Vec2::splat(high),

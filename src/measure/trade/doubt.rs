@@ -45,25 +45,26 @@ impl PictureDoubt {
         }
     }
 
-    /// Whether one of the errors, or what it is told to be below, is less than ten times the doubt about it. Decibels
-    /// count as the root mean square that they tell of.
+    /// What errors are at least if they are known: ten times the doubt about each. Decibels count as the root mean square
+    /// that they tell of.
+    fn bounds(&self, errors: &PictureErrors) -> PictureErrors {
+        // Share of the root mean square by which so many decibels more or less change it.
+        let share = 10.0_f64.powf(self.psnr_db / 20.0) - 1.0;
+        let clear_db = 20.0 * (CLEAR * share).log10();
+        PictureErrors {
+            linear_rmse: CLEAR * self.linear_rmse,
+            psnr_db: errors.psnr_db.map(|db| db - clear_db),
+            ssim: 1.0 - CLEAR * self.ssim,
+            flip: CLEAR * self.flip,
+        }
+    }
+
+    /// Whether one of the errors, or what it is told to be below, is less than ten times the doubt about it.
     #[must_use]
     pub fn limits(&self, errors: &PictureErrors) -> bool {
         let told = PictureErrors::worse(*errors, LEAST);
-        let below = told
-            .psnr_db
-            .zip(errors.psnr_db)
-            .map_or(0.0, |(told, db)| db - told);
-        told.linear_rmse < CLEAR * self.linear_rmse
-            || told.flip < CLEAR * self.flip
-            || 1.0 - told.ssim < CLEAR * self.ssim
-            || 1.0 < CLEAR * share(self.psnr_db) * 10.0_f64.powf(-below / 20.0)
+        PictureErrors::worse(told, self.bounds(errors)) != told
     }
-}
-
-/// Share of a root mean square by which so many decibels more or less change it.
-fn share(doubt_db: f64) -> f64 {
-    10.0_f64.powf(doubt_db / 20.0) - 1.0
 }
 
 /// The next multiple of `1 / steps` below, or this if it is one to within rounding.
@@ -79,31 +80,29 @@ impl PictureErrors {
         let Some(db) = self.psnr_db else {
             return ["0.000", "∞", "1.000", "0.000"].map(str::to_owned);
         };
-        // Bounds are rounded away from what they bound.
-        let below = |error: f64, least: f64, doubt: f64| {
-            let bound = least.max(CLEAR * doubt);
+        // Rounded away from what they bound.
+        let bounds = Self::worse(LEAST, doubt.bounds(self));
+        let below = |error: f64, bound: f64| {
             if error < bound {
                 format!("<{:.3}", -rounded_down(-bound, 1e3))
             } else {
                 format!("{error:.3}")
             }
         };
-        let known = db - (20.0 * (CLEAR * share(doubt.psnr_db)).log10()).max(0.0);
-        let db_bound = known.min(LEAST.psnr_db.unwrap_or_default());
-        let ssim_bound = LEAST.ssim.min(1.0 - CLEAR * doubt.ssim);
+        let db_bound = bounds.psnr_db.unwrap_or(db);
         [
-            below(self.linear_rmse, LEAST.linear_rmse, doubt.linear_rmse),
+            below(self.linear_rmse, bounds.linear_rmse),
             if db > db_bound {
                 format!(">{:.1}", rounded_down(db_bound, 10.0))
             } else {
                 format!("{db:.1}")
             },
-            if self.ssim > ssim_bound {
-                format!(">{:.2}", rounded_down(ssim_bound, 100.0))
+            if self.ssim > bounds.ssim {
+                format!(">{:.2}", rounded_down(bounds.ssim, 100.0))
             } else {
                 format!("{:.3}", self.ssim)
             },
-            below(self.flip, LEAST.flip, doubt.flip),
+            below(self.flip, bounds.flip),
         ]
     }
 

@@ -157,9 +157,11 @@ pub fn rising_ray(
     let [low, high] = field.range();
     let start = field.texels_from_uv(uv.map(f64::from));
     let rates = field.texels_per_uv();
-    let stays = border.map_or(f64::INFINITY, |border| border.exit(uv, per_z));
-    let per_z = [0, 1].map(|k| f64::from(per_z[k]) * rates[k]);
     let z_start = field.displacement(start) + LIFT * (high - low);
+    let stays = border.map_or(f64::INFINITY, |border| {
+        border.exit(uv, per_z, high - z_start)
+    });
+    let per_z = [0, 1].map(|k| f64::from(per_z[k]) * rates[k]);
     let z_end = high.min(z_start + stays);
     (start.iter().all(|place| place.is_finite()) && z_start < z_end)
         .then(|| ReliefRay::by_height(start, per_z, z_start, z_end))
