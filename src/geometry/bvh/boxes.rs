@@ -6,6 +6,7 @@ use super::single::push_sorted;
 use super::stack::{Entry, Stack};
 use crate::geometry::triangle::LANES;
 use crate::geometry::{Aabb, Ray, RaySlabs, TriangleMesh};
+use crate::math::lanes::ones;
 
 /// A hierarchy over boxes, by their index.
 ///
@@ -112,7 +113,7 @@ impl BoxesAlong<'_> {
                     }
                     Child::Block(index) => {
                         if let Some(block) = self.bvh.blocks.get(index) {
-                            self.list(block);
+                            self.list(block, limit);
                             return Some(());
                         }
                         break;
@@ -122,19 +123,18 @@ impl BoxesAlong<'_> {
         }
     }
 
-    fn list(&mut self, block: &Block) {
+    fn list(&mut self, block: &Block, limit: f32) {
         self.left = 0;
-        for (prim, [min, max, _]) in block.triangles() {
-            let (near, far) = self.slabs.interval(min, max);
-            if near <= far && far >= 0.0 {
-                let mut at = self.left;
-                while at > 0 && self.met[at - 1].0 < near {
-                    self.met[at] = self.met[at - 1];
-                    at -= 1;
-                }
-                self.met[at] = (near, prim);
-                self.left += 1;
+        let (mask, near) = block.hit_boxes(&self.slabs, limit);
+        for lane in ones(u64::from(mask)) {
+            let lane = lane % LANES;
+            let mut at = self.left;
+            while at > 0 && self.met[at - 1].0 < near[lane] {
+                self.met[at] = self.met[at - 1];
+                at -= 1;
             }
+            self.met[at] = (near[lane], block.prims[lane]);
+            self.left += 1;
         }
     }
 }

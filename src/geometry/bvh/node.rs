@@ -100,21 +100,28 @@ impl Node {
     /// The same operations as [`RaySlabs::interval`], so that intervals nest bit for bit.
     #[inline(always)]
     pub(super) fn hit_lanes(&self, ray: &RaySlabs, t_max: f32) -> (u32, [f32; LANES]) {
-        let (mut near, mut far) = (F32x8::splat(0.0), F32x8::splat(t_max));
-        let (inv_dir, shifts) = (ray.inv_dir.to_array(), ray.shifts());
-        for axis in 0..3 {
-            let negative = ray.negative[axis];
-            let first = F32x8::load(&self.planes[axis][usize::from(negative)]);
-            let last = F32x8::load(&self.planes[axis][usize::from(!negative)]);
-            let inv = F32x8::splat(inv_dir[axis]);
-            let [near_shift, far_shift] = shifts[axis].map(F32x8::splat);
-            near = (first * inv - near_shift).max(near);
-            far = (last * inv - far_shift).min(far);
-        }
-        // Written so that NaN means a visit, which changes no answer.
-        let mask = !near.greater(far) & ((1 << LANES) - 1);
-        (mask, near.to_array())
+        let [x, y, z] = &self.planes;
+        hit_lanes([x.each_ref(), y.each_ref(), z.each_ref()], ray, t_max)
     }
+}
+
+/// Which of eight boxes the ray meets in `[0, t_max]`, as bits, and where it enters each: `[axis][least, most][box]`.
+#[inline(always)]
+fn hit_lanes(planes: [[&[f32; LANES]; 2]; 3], ray: &RaySlabs, t_max: f32) -> (u32, [f32; LANES]) {
+    let (mut near, mut far) = (F32x8::splat(0.0), F32x8::splat(t_max));
+    let (inv_dir, shifts) = (ray.inv_dir.to_array(), ray.shifts());
+    for axis in 0..3 {
+        let negative = ray.negative[axis];
+        let first = F32x8::load(planes[axis][usize::from(negative)]);
+        let last = F32x8::load(planes[axis][usize::from(!negative)]);
+        let inv = F32x8::splat(inv_dir[axis]);
+        let [near_shift, far_shift] = shifts[axis].map(F32x8::splat);
+        near = (first * inv - near_shift).max(near);
+        far = (last * inv - far_shift).min(far);
+    }
+    // Written so that NaN means a visit, which changes no answer.
+    let mask = !near.greater(far) & ((1 << LANES) - 1);
+    (mask, near.to_array())
 }
 
 /// Up to eight triangles: five cache lines.
@@ -143,6 +150,23 @@ impl Block {
             }
         }
         block
+    }
+
+    /// [`Node::hit_lanes`] for boxes in place of the triangles: those between their first two corners.
+    #[inline(always)]
+    pub(super) fn hit_boxes(&self, ray: &RaySlabs, t_max: f32) -> (u32, [f32; LANES]) {
+        let [least, most, _] = &self.corners;
+        let planes = [
+            [&least[0], &most[0]],
+            [&least[1], &most[1]],
+            [&least[2], &most[2]],
+        ];
+        let (mask, near) = hit_lanes(planes, ray, t_max);
+        let mut used = 0;
+        for (lane, &prim) in self.prims.iter().enumerate() {
+            used |= u32::from(prim != NO_PRIM) << lane;
+        }
+        (mask & used, near)
     }
 
     /// Whether the same triangles are in the same lanes.

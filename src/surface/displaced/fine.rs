@@ -11,6 +11,7 @@ use super::cells::PieceCells;
 use super::charts::Shape;
 use super::local::{LocalFrame, LocalRay};
 use super::pieces::{Piece, WHOLE};
+use super::seams::SeamsAround;
 use super::trace::SurfaceHit;
 use super::{Displacement, Reliefs, seams};
 use crate::geometry::triangle::{Corners8, LANES, TriangleTest as _, Watertight};
@@ -138,6 +139,8 @@ pub struct Patch<'a, 'm> {
     /// Weights of the triangle's second and third corner at the piece's first, and their changes to its others.
     frame: [[f32; 2]; 3],
     cut: Cut,
+    /// The seams that it may reach.
+    seams: Option<SeamsAround<'a>>,
     /// Smallest and largest displacement of the piece.
     range: [f32; 2],
 }
@@ -215,6 +218,11 @@ impl<'a, 'm> Patch<'a, 'm> {
             n: order.map(|k| displacement.normals[vertices[k] as usize]),
             uv: order.map(|k| mesh.uvs[vertices[k] as usize]),
             frame: [c0, way(c1), way(c2)],
+            seams: if cut.on_seam {
+                displacement.seams.around(prim)
+            } else {
+                None
+            },
             cut,
             range: displacement.ranges[piece as usize],
         })
@@ -362,8 +370,8 @@ impl<'a, 'm> Patch<'a, 'm> {
                 row.set(group, p + n * d);
             }
         }
-        if self.cut.on_seam {
-            self.mend(door, &places, &mut points);
+        if let Some(seams) = &self.seams {
+            self.mend((seams, door.0), &places, &mut points);
         }
         points
     }
@@ -372,7 +380,7 @@ impl<'a, 'm> Patch<'a, 'm> {
     #[inline(never)]
     fn mend(
         &self,
-        (reliefs, displacement): Door<'_, '_>,
+        (seams, reliefs): (&SeamsAround<'_>, &Reliefs<'_, '_>),
         places: &[Row; 2],
         points: &mut [Row; 3],
     ) {
@@ -385,10 +393,7 @@ impl<'a, 'm> Patch<'a, 'm> {
             for k in 0..3 {
                 by_corner[self.order[k]] = w[k];
             }
-            if let Some(d) = displacement
-                .seams
-                .displacement(reliefs, self.prim, by_corner)
-            {
+            if let Some(d) = seams.displacement(reliefs, by_corner) {
                 for (axis, row) in points.iter_mut().enumerate() {
                     let p = sum(w, self.p.map(|p| p[axis]));
                     let n = sum(w, self.n.map(|n| n[axis]));

@@ -103,28 +103,45 @@ impl Seams {
         self.report
     }
 
-    /// The displacement at a border vertex of a triangle on a seam: the mean of all sides, taken in the
-    /// same order from each. `weights` are those of the triangle's corners; `None` for vertices on no
-    /// seam.
-    pub fn displacement(
-        &self,
-        reliefs: &Reliefs<'_, '_>,
-        prim: u32,
-        weights: [f32; 3],
-    ) -> Option<f32> {
+    /// The seams around a triangle; `None` if none of its corners lies on one.
+    pub fn around(&self, prim: u32) -> Option<SeamsAround<'_>> {
         let places = self.prims.get(&prim)?;
+        let edge = |opposite: usize| {
+            let (a, b) = ((opposite + 1) % 3, (opposite + 2) % 3);
+            let ends = if places[a] <= places[b] {
+                [a, b]
+            } else {
+                [b, a]
+            };
+            let sides = self.edges.get(&ends.map(|k| places[k]))?;
+            Some((ends, sides.as_slice()))
+        };
+        let corner = |k: usize| Some(self.corners.get(&places[k])?.as_slice());
+        Some(SeamsAround {
+            corners: [corner(0), corner(1), corner(2)],
+            edges: [edge(0), edge(1), edge(2)],
+        })
+    }
+}
+
+/// The seams at a triangle's corners, and at the edges across from them.
+#[derive(Debug, Clone, Copy)]
+pub struct SeamsAround<'a> {
+    corners: [Option<&'a [(u16, Vec2)]>; 3],
+    /// With the corners that are their ends, in the order of the sides' texture coordinates.
+    edges: [Option<([usize; 2], &'a [EdgeSide])>; 3],
+}
+
+impl SeamsAround<'_> {
+    /// The displacement at a border vertex of the triangle: the mean of all sides, taken in the same order from each.
+    /// `weights` are those of the triangle's corners; `None` for vertices on no seam.
+    pub fn displacement(&self, reliefs: &Reliefs<'_, '_>, weights: [f32; 3]) -> Option<f32> {
         if let Some(corner) = weights.iter().position(|&w| w == 1.0) {
-            let sides = self.corners.get(&places[corner])?;
+            let sides = self.corners[corner]?;
             return Some(mean(sides.iter().map(|&(m, uv)| at(reliefs, m, uv))));
         }
         let opposite = weights.iter().position(|&w| w == 0.0)?;
-        let (a, b) = ((opposite + 1) % 3, (opposite + 2) % 3);
-        let (a, b) = if places[a] <= places[b] {
-            (a, b)
-        } else {
-            (b, a)
-        };
-        let sides = self.edges.get(&[places[a], places[b]])?;
+        let ([a, b], sides) = self.edges[opposite]?;
         let along = |side: &EdgeSide| {
             let uv = side.uv[0] * weights[a] + side.uv[1] * weights[b];
             at(reliefs, side.material, uv)
