@@ -19,8 +19,15 @@ use crate::surface::mapping::relief::{ReliefRay, Walk};
 const RAYS_BETWEEN_STOPS: usize = 16;
 
 /// Prisms of flat reliefs that are kept at hand, and pieces that are cut up.
-const PRISMS: usize = 16;
-const PATCHES: usize = 128;
+const PRISMS_LOG2: u32 = 4;
+const PATCHES_LOG2: u32 = 7;
+
+/// Where the thing of a number is kept, of `2^log2` places: numbers that differ by powers of two, as those of neighbours
+/// in a grid do, lie apart.
+const fn kept_at(number: u32, log2: u32) -> usize {
+    // The golden ratio, as a share of 2³²: Fibonacci hashing.
+    (number.wrapping_mul(0x9e37_79b9) >> (u32::BITS - log2)) as usize
+}
 
 /// A point of a displaced surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -311,8 +318,10 @@ impl Kernel for Visit<'_, '_, '_> {
             micro,
         } = self.mesh;
         // Rays nearby meet the same few triangles by turns.
-        let mut prisms: [Option<(u32, FlatPrism<'_, '_>)>; PRISMS] = [None; PRISMS];
-        let mut patches: [Option<ReadyPatch<'_, '_>>; PATCHES] = [None; PATCHES];
+        let mut prisms: [Option<(u32, FlatPrism<'_, '_>)>; 1 << PRISMS_LOG2] =
+            [None; 1 << PRISMS_LOG2];
+        let mut patches: [Option<ReadyPatch<'_, '_>>; 1 << PATCHES_LOG2] =
+            [None; 1 << PATCHES_LOG2];
         let Tracer {
             asked, rays, jobs, ..
         } = self.tracer;
@@ -331,7 +340,7 @@ impl Kernel for Visit<'_, '_, '_> {
                 let Piece { prim, shape, .. } = displacement.pieces[i as usize];
                 match shape {
                     Shape::Flat => {
-                        let kept = &mut prisms[prim as usize % PRISMS];
+                        let kept = &mut prisms[kept_at(prim, PRISMS_LOG2)];
                         if kept.is_none_or(|(known, _)| known != prim) {
                             let prism = FlatPrism::new(mesh, &reliefs, displacement, prim);
                             *kept = prism.map(|prism| (prim, prism));
@@ -352,7 +361,7 @@ impl Kernel for Visit<'_, '_, '_> {
                     Shape::Fine(_) => {
                         let ray = fine_ray
                             .get_or_insert_with(|| FineRay::new(&ray, displacement.reach()));
-                        let kept = &mut patches[i as usize % PATCHES];
+                        let kept = &mut patches[kept_at(i, PATCHES_LOG2)];
                         if kept.is_none_or(|patch| patch.piece() != i) {
                             *kept = Patch::new(mesh, door, i).map(ReadyPatch::new);
                         }
