@@ -54,6 +54,13 @@ impl Tangents {
         self.0[prim as usize]
     }
 
+    /// Those of all corners, three for each triangle.
+    #[inline]
+    #[must_use]
+    pub const fn corners(&self) -> &[Tangent] {
+        self.0.as_slice().as_flattened()
+    }
+
     /// Heap bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {

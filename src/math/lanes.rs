@@ -8,13 +8,19 @@ use super::wide::{Wide, WideBits, WideMask};
 /// `N` values, where `N` is a multiple of every vector's lanes, aligned to the widest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
-pub struct Lanes<T, const N: usize>(pub [T; N]);
+pub struct Lanes<T, const N: usize>(pub [T; N], Gap);
+
+/// A cache line between the columns of a table. Without it those of 1024 floats would lie 4096 bytes apart, and the
+/// same place of all of them in one and the same set of the first cache, which holds eight or twelve lines: every loop
+/// over more columns than that would wait for the second cache.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Gap([u8; 64]);
 
 impl<T: Copy, const N: usize> Lanes<T, N> {
     /// The same for all.
     #[must_use]
     pub const fn splat(x: T) -> Self {
-        Self([x; N])
+        Self([x; N], Gap([0; 64]))
     }
 
     /// The part of a group: `width` neighbours. Both must fit.

@@ -3,6 +3,7 @@
 
 mod color;
 mod false_color;
+pub(crate) mod fetch;
 mod float;
 mod groups;
 mod hash;
@@ -16,6 +17,7 @@ pub(crate) mod wide;
 
 pub use color::{LinearRgb, SrgbEncoder, linear_from_srgb, srgb_from_linear, srgb8_from_linear};
 pub use false_color::false_color;
+pub use fetch::Words;
 pub use float::{EPS, gamma, next_down, next_up};
 pub use groups::Groups;
 pub use hash::{hash, unit_interval};

@@ -10,6 +10,8 @@
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
+use super::fetch::Words;
+
 /// Numbers with the rounding of `f32`.
 pub trait Real:
     Copy
@@ -155,17 +157,28 @@ pub trait Bits: Copy + Debug {
     /// `yes` where the mask holds, else `no`.
     #[must_use]
     fn select(mask: <Self::Real as Real>::Mask, yes: Self, no: Self) -> Self;
+    /// Which pairs are equal.
+    fn equals_each(self, o: Self) -> <Self::Real as Real>::Mask;
     /// Which are equal to `x`.
     fn equals(self, x: u32) -> <Self::Real as Real>::Mask;
     /// The numbers with this representation.
     fn to_real(self) -> Self::Real;
     /// The numbers nearest to these as signed integers.
     fn signed_to_real(self) -> Self::Real;
-    /// `N` values for each of `K` indices in each lane.
-    fn gather<const K: usize, const N: usize>(
-        indices: [Self; K],
-        fetch: impl Fn(u32) -> [u32; N],
-    ) -> [[Self; N]; K];
+    /// The words of the elements at these indices.
+    ///
+    /// # Panics
+    /// If one is beyond the table, as for the others.
+    fn fetch<T: Words<N>, const N: usize>(self, table: &[T]) -> [Self; N];
+    /// Tells memory that the elements at these indices will soon be asked for. Changes nothing else; a single index
+    /// is not worth it.
+    fn prefetch<T>(self, table: &[T]);
+    /// The numbers at these indices.
+    #[must_use]
+    fn fetch_half(self, table: &[u16]) -> Self;
+    /// The numbers at these indices in the lower halves, those after them in the upper.
+    #[must_use]
+    fn fetch_pair(self, table: &[u16]) -> Self;
 }
 
 impl Real for f32 {
@@ -286,6 +299,10 @@ impl Bits for u32 {
         if mask { yes } else { no }
     }
     #[inline(always)]
+    fn equals_each(self, o: Self) -> bool {
+        self == o
+    }
+    #[inline(always)]
     fn equals(self, x: u32) -> bool {
         self == x
     }
@@ -298,10 +315,18 @@ impl Bits for u32 {
         self as i32 as f32
     }
     #[inline(always)]
-    fn gather<const K: usize, const N: usize>(
-        indices: [Self; K],
-        fetch: impl Fn(Self) -> [Self; N],
-    ) -> [[Self; N]; K] {
-        indices.map(fetch)
+    fn fetch<T: Words<N>, const N: usize>(self, table: &[T]) -> [Self; N] {
+        table[self as usize].words()
+    }
+    #[inline(always)]
+    fn prefetch<T>(self, _: &[T]) {}
+    #[inline(always)]
+    fn fetch_half(self, table: &[u16]) -> Self {
+        Self::from(table[self as usize])
+    }
+    #[inline(always)]
+    fn fetch_pair(self, table: &[u16]) -> Self {
+        let both = &table[self as usize..self as usize + 2];
+        Self::from(both[0]) | Self::from(both[1]) << 16
     }
 }

@@ -2,6 +2,7 @@
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
+use super::fetch::{self, Words};
 use super::real::{Bits, Mask, Real};
 use super::simd::{
     Bytes as _, ExtractToken as _, Select as _, Simd, SimdBase, SimdCvtFloat as _, SimdFloat,
@@ -226,6 +227,10 @@ impl<S: Simd> Bits for WideBits<S> {
         Self(mask.0.select(yes.0, no.0))
     }
     #[inline(always)]
+    fn equals_each(self, o: Self) -> WideMask<S> {
+        WideMask(self.0.simd_eq(o.0))
+    }
+    #[inline(always)]
     fn equals(self, x: u32) -> WideMask<S> {
         WideMask(self.0.simd_eq(S::u32s::splat(self.0.token(), x)))
     }
@@ -239,24 +244,25 @@ impl<S: Simd> Bits for WideBits<S> {
         Wide(S::f32s::float_from(signed))
     }
     #[inline(always)]
-    fn gather<const K: usize, const N: usize>(
-        indices: [Self; K],
-        fetch: impl Fn(u32) -> [u32; N],
-    ) -> [[Self; N]; K] {
-        let simd = S::u32s::token(&indices[0].0);
-        let mut lanes = [[0; MAX_LANES]; K];
-        for k in 0..K {
-            indices[k].0.store_slice(&mut lanes[k][..S::u32s::LEN]);
-        }
-        let mut found = [[[0; MAX_LANES]; N]; K];
-        gather_lanes(S::u32s::LEN, &lanes, fetch, &mut found);
-        let mut wide = [[Self(S::u32s::splat(simd, 0)); N]; K];
-        for k in 0..K {
-            for n in 0..N {
-                wide[k][n] = Self(S::u32s::from_slice(simd, &found[k][n][..S::u32s::LEN]));
-            }
+    fn fetch<T: Words<N>, const N: usize>(self, table: &[T]) -> [Self; N] {
+        let found = fetch::words::<S, T, N>(table, self.0);
+        let mut wide = [self; N];
+        for n in 0..N {
+            wide[n] = Self(found[n]);
         }
         wide
+    }
+    #[inline(always)]
+    fn prefetch<T>(self, table: &[T]) {
+        fetch::prefetch::<S, T>(table, self.0);
+    }
+    #[inline(always)]
+    fn fetch_half(self, table: &[u16]) -> Self {
+        Self(fetch::halves::<S>(table, self.0))
+    }
+    #[inline(always)]
+    fn fetch_pair(self, table: &[u16]) -> Self {
+        Self(fetch::pairs::<S>(table, self.0))
     }
 }
 
@@ -273,27 +279,6 @@ fn each_lane<const I: usize, const O: usize>(
         wanted &= wanted - 1;
         for (found, x) in found.iter_mut().zip(f(lanes[lane])) {
             found[lane] = x;
-        }
-    }
-}
-
-/// `found[k][n][lane]` is the `n`-th value that `lanes[k][lane]` fetches, for the first `count` lanes.
-///
-/// Never inlined: as part of a kernel, the compiler unrolls it into thousands of insertions into vector
-/// registers that it then has to spill. That is as fast, and five times as much code for each level.
-#[inline(never)]
-fn gather_lanes<const K: usize, const N: usize>(
-    count: usize,
-    lanes: &[[u32; MAX_LANES]; K],
-    fetch: impl Fn(u32) -> [u32; N],
-    found: &mut [[[u32; MAX_LANES]; N]; K],
-) {
-    for lane in 0..count.min(MAX_LANES) {
-        for k in 0..K {
-            let values = fetch(lanes[k][lane]);
-            for n in 0..N {
-                found[k][n][lane] = values[n];
-            }
         }
     }
 }

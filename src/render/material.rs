@@ -26,6 +26,15 @@ pub struct BoundColor<'a> {
 }
 
 impl BoundColor<'_> {
+    /// Has memory bring what will be looked up at `uv` soon, if the map is read at points.
+    #[inline(always)]
+    pub fn prefetch<F: Real>(&self, uv: V2<F>) {
+        if self.mips.is_none() {
+            self.map
+                .prefetch(self.addressing.st(uv), self.addressing.wrap);
+        }
+    }
+
     /// Linear colour at `uv`, the mean over the footprint of a point.
     #[inline(always)]
     #[must_use]

@@ -1,6 +1,7 @@
 //! The frame that bakers of normal maps interpolate over a triangle.
 
 use super::SurfaceInteraction;
+use super::facet::v3;
 use crate::geometry::{Tangents, TriangleMesh};
 use crate::math::{Bits, Real, V3};
 
@@ -22,22 +23,15 @@ impl<F: Real> BakedFrame<F> {
         prims: F::Bits,
         smooth: bool,
     ) -> Self {
-        let corner = |k: usize| {
-            let fetch = |prim: u32| tangents.of(prim)[k].map(f32::to_bits);
-            let [[x, y, z, sign]] = F::Bits::gather([prims], fetch);
-            (
-                V3::new(x.to_real(), y.to_real(), z.to_real()),
-                sign.to_real(),
-            )
+        let (t0, sign) = tangent(tangents, prims, 0);
+        let ((t1, _), (t2, _)) = (tangent(tangents, prims, 1), tangent(tangents, prims, 2));
+        let normals = if smooth {
+            let [a, b, c] = prims.fetch(&mesh.indices);
+            let at = &*mesh.normals;
+            Some([v3(a.fetch(at)), v3(b.fetch(at)), v3(c.fetch(at))])
+        } else {
+            None
         };
-        let ((t0, sign), (t1, _), (t2, _)) = (corner(0), corner(1), corner(2));
-        let normals = smooth.then(|| {
-            let [corners] = F::Bits::gather([prims], |prim| mesh.indices[prim as usize]);
-            let normal = |i: u32| mesh.normals[i as usize].to_array().map(f32::to_bits);
-            let to_real = |[x, y, z]: [F::Bits; 3]| V3::new(x.to_real(), y.to_real(), z.to_real());
-            let [a, b, c] = F::Bits::gather(corners, normal);
-            [to_real(a), to_real(b), to_real(c)]
-        });
         Self {
             tangents: [t0, t1, t2],
             normals,
@@ -64,4 +58,11 @@ impl<F: Real> BakedFrame<F> {
         s.dp_du = V3::select(usable, tangent, V3::new(zero, zero, zero));
         s.handedness = F::select(usable, sign, zero);
     }
+}
+
+/// The tangent at a corner, and the sign of the bitangent.
+#[inline(always)]
+fn tangent<F: Real>(tangents: &Tangents, prims: F::Bits, corner: u32) -> (V3<F>, F) {
+    let [x, y, z, sign] = prims.times(3).plus(corner).fetch(tangents.corners());
+    (v3([x, y, z]), sign.to_real())
 }

@@ -42,10 +42,9 @@ impl<F: Real> Facet<F> {
     #[inline(always)]
     #[must_use]
     pub fn fetch(mesh: &TriangleMesh, prims: F::Bits, kind: FacetKind) -> Self {
-        let [corners] = F::Bits::gather([prims], |prim| mesh.indices[prim as usize]);
-        let point = |i: u32| mesh.positions[i as usize].to_array().map(f32::to_bits);
-        let [p0, p1, p2] = F::Bits::gather(corners, point);
-        let p: [V3<F>; 3] = [v3(p0), v3(p1), v3(p2)];
+        let [a, b, c] = prims.fetch(&mesh.indices);
+        let at = &*mesh.positions;
+        let p: [V3<F>; 3] = [v3(a.fetch(at)), v3(b.fetch(at)), v3(c.fetch(at))];
         let zero = p[0].x.splat(0.0);
         let none = V3::new(zero, zero, zero);
         let mut facet = Self {
@@ -59,14 +58,12 @@ impl<F: Real> Facet<F> {
             handedness: zero,
         };
         if kind.smooth {
-            let normal = |i: u32| mesh.normals[i as usize].to_array().map(f32::to_bits);
-            let [n0, n1, n2] = F::Bits::gather(corners, normal);
-            facet.n = [v3(n0), v3(n1), v3(n2)];
+            let at = &*mesh.normals;
+            facet.n = [v3(a.fetch(at)), v3(b.fetch(at)), v3(c.fetch(at))];
         }
         if kind.parts >= SurfaceParts::Uv {
-            let uv = |i: u32| mesh.uvs[i as usize].to_array().map(f32::to_bits);
-            let [t0, t1, t2] = F::Bits::gather(corners, uv);
-            facet.uv = [v2(t0), v2(t1), v2(t2)];
+            let at = &*mesh.uvs;
+            facet.uv = [v2(a.fetch(at)), v2(b.fetch(at)), v2(c.fetch(at))];
         }
         facet.derive(kind.parts);
         facet
@@ -137,8 +134,9 @@ impl<F: Real> Facet<F> {
     }
 }
 
+/// A vector whose numbers were fetched.
 #[inline(always)]
-fn v3<F: Real>([x, y, z]: [F::Bits; 3]) -> V3<F> {
+pub(super) fn v3<F: Real>([x, y, z]: [F::Bits; 3]) -> V3<F> {
     V3::new(x.to_real(), y.to_real(), z.to_real())
 }
 

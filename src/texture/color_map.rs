@@ -4,6 +4,7 @@ use std::sync::LazyLock;
 
 use glam::Vec2;
 
+use super::grid::{Decode, Floats};
 use super::mips::halvings;
 use super::{Grid, RawImage, Samples, Wrap};
 use crate::math::{Bits as _, LinearRgb, Real, V2, linear_from_srgb};
@@ -55,16 +56,17 @@ impl ColorMap {
     #[inline(always)]
     pub fn sample<F: Real>(&self, st: V2<F>, wrap: Wrap) -> LinearRgb<F> {
         match self {
-            Self::Srgb8(g) => {
-                let lut = &*LINEAR_FROM_BYTE;
-                let linear = |byte: u8| lut[usize::from(byte)].to_bits();
-                let bits = |[r, g, b, _]: [u8; 4]| [linear(r), linear(g), linear(b)];
-                LinearRgb::from(g.mix(&g.cell(st, wrap), bits, reals::<F>))
-            }
-            Self::Linear(g) => {
-                let bits = |[r, g, b]: [f32; 3]| [r.to_bits(), g.to_bits(), b.to_bits()];
-                LinearRgb::from(g.mix(&g.cell(st, wrap), bits, reals::<F>))
-            }
+            Self::Srgb8(g) => LinearRgb::from(g.mix(&g.cell(st, wrap), Srgb)),
+            Self::Linear(g) => LinearRgb::from(g.mix(&g.cell(st, wrap), Floats)),
+        }
+    }
+
+    /// Has memory bring what [`Self::sample`] will look up soon.
+    #[inline(always)]
+    pub fn prefetch<F: Real>(&self, st: V2<F>, wrap: Wrap) {
+        match self {
+            Self::Srgb8(g) => g.prefetch(st, wrap),
+            Self::Linear(g) => g.prefetch(st, wrap),
         }
     }
 
@@ -101,8 +103,17 @@ impl ColorMap {
     }
 }
 
-/// Floats whose representations were fetched.
-#[inline(always)]
-pub(super) fn reals<F: Real>([x, y, z]: [F::Bits; 3]) -> [F; 3] {
-    [x.to_real(), y.to_real(), z.to_real()]
+/// Three sRGB bytes, the lowest first.
+#[derive(Clone, Copy)]
+struct Srgb;
+
+impl Decode<1, 3> for Srgb {
+    #[inline(always)]
+    fn decode<F: Real>(self, [texel]: [F::Bits; 1]) -> [F; 3] {
+        let linear = &*LINEAR_FROM_BYTE;
+        let [r] = texel.and(0xff).fetch(linear);
+        let [g] = texel.shr(8).and(0xff).fetch(linear);
+        let [b] = texel.shr(16).and(0xff).fetch(linear);
+        Floats.decode([r, g, b])
+    }
 }

@@ -4,8 +4,9 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
+use super::grid::Floats;
 use super::{Grid, HeightMap, Wrap};
-use crate::math::{Bits as _, Real, V2};
+use crate::math::{Real, V2};
 
 /// Directions in which the neighbourhood of a texel is looked through.
 const AZIMUTHS: u32 = 16;
@@ -45,9 +46,8 @@ impl ConeMap {
     #[inline(always)]
     pub fn narrowest<F: Real>(&self, st: V2<F>, wrap: Wrap) -> F {
         let cell = self.0.cell(st, wrap);
-        let [a, b, c, d] = F::Bits::gather(cell.texels, |i| [self.0.texel(i).to_bits()]);
-        let (a, b) = (a[0].to_real(), b[0].to_real());
-        a.smaller(b).smaller(c[0].to_real().smaller(d[0].to_real()))
+        let [[a], [b], [c], [d]] = self.0.corners(&cell, Floats);
+        a.smaller(b).smaller(c.smaller(d))
     }
 
     /// Heap bytes.

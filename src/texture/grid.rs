@@ -1,7 +1,7 @@
 //! A rectangle of texels and the address arithmetic of bilinear look-ups.
 
 use super::Wrap;
-use crate::math::{Bits, Real, V2};
+use crate::math::{Bits, Real, V2, Words};
 
 /// `width · height` texels, row 0 on top.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,6 +9,29 @@ pub struct Grid<T> {
     width: u32,
     height: u32,
     texels: Vec<T>,
+}
+
+/// How `N` channels are read from the `B` words of a texel.
+///
+/// A trait, because a function that is handed on as a value is compiled without the vector instructions of its caller.
+pub(super) trait Decode<const B: usize, const N: usize>: Copy {
+    /// The channels.
+    fn decode<F: Real>(self, words: [F::Bits; B]) -> [F; N];
+}
+
+/// Channels that are stored as floats.
+#[derive(Clone, Copy)]
+pub(super) struct Floats;
+
+impl<const N: usize> Decode<N, N> for Floats {
+    #[inline(always)]
+    fn decode<F: Real>(self, words: [F::Bits; N]) -> [F; N] {
+        let mut floats = [words[0].to_real(); N];
+        for n in 1..N {
+            floats[n] = words[n].to_real();
+        }
+        floats
+    }
 }
 
 /// Four texel indices around a point and its place between them; with vector lanes, for each.
@@ -69,12 +92,6 @@ impl<T: Copy> Grid<T> {
         self.texels[y as usize * self.width as usize + x as usize]
     }
 
-    /// The texel with a linear index from [`cell`](Self::cell).
-    #[inline(always)]
-    pub(super) fn texel(&self, index: u32) -> T {
-        self.texels[index as usize]
-    }
-
     /// Where `st` falls: s to the right and t downwards, both 0…1 across the picture, texel centres at
     /// `(i + ½) / size`. Non-finite coordinates count as 0.
     #[must_use]
@@ -95,15 +112,28 @@ impl<T: Copy> Grid<T> {
         }
     }
 
-    /// Bilinear means of `N` channels. `decode` takes 32 bits apart that `bits` makes of a texel.
+    /// Has memory bring what will be looked up around `st` soon: the lower texels, beside which the upper ones were
+    /// looked up just before where neighbours go down the picture.
+    #[inline(always)]
+    pub(super) fn prefetch<F: Real>(&self, st: V2<F>, wrap: Wrap) {
+        let (column, _, _) = wrap.neighbours(st.x, self.width);
+        let (_, row, _) = wrap.neighbours(st.y, self.height);
+        row.times(self.width)
+            .plus_each(column)
+            .prefetch(&self.texels);
+    }
+
+    /// Bilinear means of `N` channels.
     #[inline(always)]
     pub(super) fn mix<F: Real, const N: usize, const B: usize>(
         &self,
         cell: &BilinearCell<F>,
-        bits: impl Fn(T) -> [u32; B],
-        decode: impl Fn([F::Bits; B]) -> [F; N],
-    ) -> [F; N] {
-        let [a, b, c, d] = self.corners(cell, bits, decode);
+        how: impl Decode<B, N>,
+    ) -> [F; N]
+    where
+        T: Words<B>,
+    {
+        let [a, b, c, d] = self.corners(cell, how);
         let mut mixed = a;
         for n in 0..N {
             mixed[n] = cell.mix([a[n], b[n], c[n], d[n]]);
@@ -116,11 +146,19 @@ impl<T: Copy> Grid<T> {
     pub(super) fn corners<F: Real, const N: usize, const B: usize>(
         &self,
         cell: &BilinearCell<F>,
-        bits: impl Fn(T) -> [u32; B],
-        decode: impl Fn([F::Bits; B]) -> [F; N],
-    ) -> [[F; N]; 4] {
-        let [a, b, c, d] = F::Bits::gather(cell.texels, |index| bits(self.texel(index)));
-        [decode(a), decode(b), decode(c), decode(d)]
+        how: impl Decode<B, N>,
+    ) -> [[F; N]; 4]
+    where
+        T: Words<B>,
+    {
+        let [a, b, c, d] = cell.texels;
+        let texels = &*self.texels;
+        [
+            how.decode(a.fetch(texels)),
+            how.decode(b.fetch(texels)),
+            how.decode(c.fetch(texels)),
+            how.decode(d.fetch(texels)),
+        ]
     }
 }
 

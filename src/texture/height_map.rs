@@ -2,10 +2,10 @@
 
 use glam::Vec2;
 
-use super::grid::BilinearCell;
+use super::grid::{BilinearCell, Floats};
 use super::mips::halvings;
 use super::{Channel, Grid, RawImage, Samples, Wrap};
-use crate::math::{Bits as _, Real, V2};
+use crate::math::{Bits as _, Mask as _, Real, V2};
 
 /// One number a texel. Integers stay `u16` in memory (8-bit ones are spread to 16), behind one accessor.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,6 +122,15 @@ impl HeightMap {
         cell.mix(corners)
     }
 
+    /// Has memory bring what [`Self::sample`] will look up soon.
+    #[inline(always)]
+    pub fn prefetch<F: Real>(&self, st: V2<F>, wrap: Wrap) {
+        match self {
+            Self::U16(g) => g.prefetch(st, wrap),
+            Self::F32(g) => g.prefetch(st, wrap),
+        }
+    }
+
     /// Bilinear value and its analytic derivative: exact for the bilinear surface, discontinuous at
     /// texel lines.
     #[must_use]
@@ -151,17 +160,18 @@ impl HeightMap {
     /// The cell that `st` falls into and the values at its corners.
     #[inline(always)]
     fn corners<F: Real>(&self, st: V2<F>, wrap: Wrap) -> (BilinearCell<F>, [F; 4]) {
-        let (cell, [[a], [b], [c], [d]]) = match self {
+        match self {
             Self::U16(g) => {
                 let cell = g.cell(st, wrap);
-                (cell, g.corners(&cell, |x| [u32::from(x)], fractions))
+                let corners = halves(g.texels(), &cell);
+                (cell, corners)
             }
             Self::F32(g) => {
                 let cell = g.cell(st, wrap);
-                (cell, g.corners(&cell, |x| [x.to_bits()], reals))
+                let [[a], [b], [c], [d]] = g.corners(&cell, Floats);
+                (cell, [a, b, c, d])
             }
-        };
-        (cell, [a, b, c, d])
+        }
     }
 
     /// Columns and rows.
@@ -179,14 +189,31 @@ pub(super) fn fraction(stored: u16) -> f32 {
 
 /// [`fraction`] of numbers that were fetched.
 #[inline(always)]
-fn fractions<F: Real>([stored]: [F::Bits; 1]) -> [F; 1] {
-    [stored.signed_to_real() * (1.0 / 65_535.0)]
+fn fractions<F: Real>(stored: F::Bits) -> F {
+    stored.signed_to_real() * (1.0 / 65_535.0)
 }
 
-/// Floats whose representations were fetched.
+/// The heights at the corners of cells.
 #[inline(always)]
-fn reals<F: Real>([bits]: [F::Bits; 1]) -> [F; 1] {
-    [bits.to_real()]
+fn halves<F: Real>(texels: &[u16], cell: &BilinearCell<F>) -> [F; 4] {
+    let [a, b, c, d] = cell.texels;
+    // Most cells lie within the picture: two numbers next to each other are one look-up.
+    let [after_a, after_c] = [a.plus(1), c.plus(1)];
+    if (after_a.equals_each(b) & after_c.equals_each(d)).all() {
+        let (upper, lower) = (a.fetch_pair(texels), c.fetch_pair(texels));
+        return [
+            fractions(upper.and(0xffff)),
+            fractions(upper.shr(16)),
+            fractions(lower.and(0xffff)),
+            fractions(lower.shr(16)),
+        ];
+    }
+    [
+        fractions(a.fetch_half(texels)),
+        fractions(b.fetch_half(texels)),
+        fractions(c.fetch_half(texels)),
+        fractions(d.fetch_half(texels)),
+    ]
 }
 
 fn channel_value(image: &RawImage, x: u32, y: u32, channel: Channel) -> f32 {

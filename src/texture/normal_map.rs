@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::color_map::reals;
+use super::grid::{Decode, Floats};
 use super::mips::halvings;
 use super::{Grid, MapRole, RawImage, Samples, Wrap};
 use crate::math::{Bits as _, Real, V2, V3, normalize_or};
@@ -54,21 +54,21 @@ impl NormalMap {
     #[inline(always)]
     pub fn sample<F: Real>(&self, st: V2<F>, wrap: Wrap) -> V3<F> {
         let ([x, y, z], factor) = match self {
-            Self::U8(g) => {
-                let bits = |texel| [u32::from_le_bytes(texel)];
-                (g.mix(&g.cell(st, wrap), bits, bytes::<F>), 2.0 / 255.0)
-            }
-            Self::U16(g) => {
-                let bits =
-                    |[x, y, z, _]: [u16; 4]| [u32::from(x) | u32::from(y) << 16, u32::from(z)];
-                (g.mix(&g.cell(st, wrap), bits, words::<F>), 2.0 / 65_535.0)
-            }
-            Self::F32(g) => {
-                let bits = |[x, y, z]: [f32; 3]| [x.to_bits(), y.to_bits(), z.to_bits()];
-                (g.mix(&g.cell(st, wrap), bits, reals::<F>), 2.0)
-            }
+            Self::U8(g) => (g.mix(&g.cell(st, wrap), Bytes), 2.0 / 255.0),
+            Self::U16(g) => (g.mix(&g.cell(st, wrap), Halves), 2.0 / 65_535.0),
+            Self::F32(g) => (g.mix(&g.cell(st, wrap), Floats), 2.0),
         };
         V3::new(x * factor - 1.0, y * factor - 1.0, z * factor - 1.0)
+    }
+
+    /// Has memory bring what [`Self::sample`] will look up soon.
+    #[inline(always)]
+    pub fn prefetch<F: Real>(&self, st: V2<F>, wrap: Wrap) {
+        match self {
+            Self::U8(g) => g.prefetch(st, wrap),
+            Self::U16(g) => g.prefetch(st, wrap),
+            Self::F32(g) => g.prefetch(st, wrap),
+        }
     }
 
     /// The map halved again and again: means of stored vectors, brought to unit length before (so that rounding
@@ -128,21 +128,31 @@ impl NormalMap {
 }
 
 /// Three bytes, the lowest first.
-#[inline(always)]
-fn bytes<F: Real>([xyz]: [F::Bits; 1]) -> [F; 3] {
-    [
-        xyz.and(0xff).signed_to_real(),
-        xyz.shr(8).and(0xff).signed_to_real(),
-        xyz.shr(16).and(0xff).signed_to_real(),
-    ]
+#[derive(Clone, Copy)]
+struct Bytes;
+
+impl Decode<1, 3> for Bytes {
+    #[inline(always)]
+    fn decode<F: Real>(self, [xyz]: [F::Bits; 1]) -> [F; 3] {
+        [
+            xyz.and(0xff).signed_to_real(),
+            xyz.shr(8).and(0xff).signed_to_real(),
+            xyz.shr(16).and(0xff).signed_to_real(),
+        ]
+    }
 }
 
-/// Three 16-bit words, the lowest first.
-#[inline(always)]
-fn words<F: Real>([xy, z]: [F::Bits; 2]) -> [F; 3] {
-    [
-        xy.and(0xffff).signed_to_real(),
-        xy.shr(16).signed_to_real(),
-        z.signed_to_real(),
-    ]
+/// Three numbers of 16 bits, the lowest first.
+#[derive(Clone, Copy)]
+struct Halves;
+
+impl Decode<2, 3> for Halves {
+    #[inline(always)]
+    fn decode<F: Real>(self, [xy, z]: [F::Bits; 2]) -> [F; 3] {
+        [
+            xy.and(0xffff).signed_to_real(),
+            xy.shr(16).signed_to_real(),
+            z.and(0xffff).signed_to_real(),
+        ]
+    }
 }

@@ -1,6 +1,7 @@
 //! Smallest and largest heights over squares of a height map: what a walk may skip without looking.
 
 use super::{HeightMap, Wrap};
+use crate::math::{Bits, Real as _};
 
 /// The extremes of a height map over squares of 2^level cells, level 1 and up, beside the heights themselves.
 ///
@@ -115,6 +116,36 @@ impl Level {
         self.first + i as usize * self.steps[0] + j as usize * self.steps[1]
     }
 
+    /// Extremes of four squares together, of as many fours as there are lanes, in the numbers as they are stored.
+    #[inline(always)]
+    #[must_use]
+    pub fn extremes_of_four<T: Number, B: Bits>(
+        &self,
+        numbers: &[T],
+        [a, b, c, d]: [B; 4],
+    ) -> [B::Real; 2] {
+        let ([low_a, high_a], [low_b, high_b]) = (self.look(numbers, a), self.look(numbers, b));
+        let ([low_c, high_c], [low_d, high_d]) = (self.look(numbers, c), self.look(numbers, d));
+        [
+            low_a.smaller(low_b).smaller(low_c.smaller(low_d)),
+            high_a.larger(high_b).larger(high_c.larger(high_d)),
+        ]
+    }
+
+    /// Extremes of the squares whose numbers begin at these indices.
+    #[inline(always)]
+    fn look<T: Number, B: Bits>(&self, numbers: &[T], at: B) -> [B::Real; 2] {
+        let [a, b] = T::pairs(numbers, at);
+        if self.below == 0 {
+            return [a, b];
+        }
+        let [c, d] = T::pairs(numbers, at.plus(self.below as u32));
+        [
+            a.smaller(b).smaller(c.smaller(d)),
+            a.larger(b).larger(c.larger(d)),
+        ]
+    }
+
     /// Extremes of the square whose numbers begin at an index.
     ///
     /// # Panics
@@ -132,6 +163,31 @@ impl Level {
         }
         let [c, d] = pair(at + self.below);
         extremes([[low; 2], [high; 2], [c; 2], [d; 2]].into_iter())
+    }
+}
+
+/// Numbers that heights are stored in.
+pub trait Number: Sized {
+    /// The numbers at indices, and those after them; both must be there.
+    fn pairs<B: Bits>(numbers: &[Self], at: B) -> [B::Real; 2];
+}
+
+impl Number for u16 {
+    #[inline(always)]
+    fn pairs<B: Bits>(numbers: &[Self], at: B) -> [B::Real; 2] {
+        let both = at.fetch_pair(numbers);
+        [
+            both.and(0xffff).signed_to_real(),
+            both.shr(16).signed_to_real(),
+        ]
+    }
+}
+
+impl Number for f32 {
+    #[inline(always)]
+    fn pairs<B: Bits>(numbers: &[Self], at: B) -> [B::Real; 2] {
+        let ([a], [b]) = (at.fetch(numbers), at.plus(1).fetch(numbers));
+        [a.to_real(), b.to_real()]
     }
 }
 

@@ -1,8 +1,9 @@
 //! How much slopes differ within what a ray's cone covers.
 
+use super::grid::Floats;
 use super::mips::halvings;
 use super::{Grid, HeightMap, NormalMap, Wrap};
-use crate::math::{Bits as _, Real, V2};
+use crate::math::{Real, V2};
 
 /// Means of two slopes a, b and of their products: `a, b, a², b², ab`. One level of halvings.
 ///
@@ -52,9 +53,8 @@ impl SlopeMoments {
     #[must_use]
     #[inline(always)]
     pub fn variances<F: Real>(&self, st: V2<F>, wrap: Wrap) -> [F; 3] {
-        let bits = |texel: [f32; 5]| texel.map(f32::to_bits);
         let cell = self.0.cell(st, wrap);
-        let [a, b, aa, bb, ab] = self.0.mix(&cell, bits, reals::<F>);
+        let [a, b, aa, bb, ab] = self.0.mix(&cell, Floats);
         let zero = a.splat(0.0);
         // Rounding can leave a hair less than nothing.
         [
@@ -69,16 +69,4 @@ impl SlopeMoments {
     pub fn bytes(&self) -> usize {
         size_of_val(self.0.texels())
     }
-}
-
-/// Floats whose representations were fetched.
-#[inline(always)]
-fn reals<F: Real>([a, b, aa, bb, ab]: [F::Bits; 5]) -> [F; 5] {
-    [
-        a.to_real(),
-        b.to_real(),
-        aa.to_real(),
-        bb.to_real(),
-        ab.to_real(),
-    ]
 }

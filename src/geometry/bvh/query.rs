@@ -7,7 +7,7 @@ use super::{Bvh, HitFilter};
 use crate::geometry::bundle::{Floats, LaneHits, Lanes, RAYS, RaySet, lanes_of};
 use crate::geometry::triangle::Watertight;
 use crate::geometry::{Hit, HitLanes, Ray};
-use crate::math::simd::{Select, Simd, SimdBase, SimdMask};
+use crate::math::simd::{Select, Simd, SimdBase, SimdMask, merged};
 
 /// The limit of a lane without a ray, and of a ray that is done.
 const DONE: f32 = -1.0;
@@ -66,7 +66,7 @@ impl<F: HitFilter> Query for AnyLanes<'_, F> {
         let limits = self.limits.load(simd, group);
         let counts = hits.mask & hits.t.simd_lt(limits);
         let counts = accepted(simd, self.filter, prim, counts, &hits);
-        let limits = counts.select(S::f32s::splat(simd, DONE), limits);
+        let limits = merged(counts, S::f32s::splat(simd, DONE), limits);
         self.limits.store::<S>(group, limits);
     }
 }
@@ -133,11 +133,15 @@ impl<'a, F: HitFilter> ClosestLanes<'a, F> {
         for group in 0..RAYS / width {
             let found = lanes_of(simd, set & self.found, group);
             let place = first / width + group;
-            let u = found.select(self.u.load(simd, group), hits.u.load(simd, place));
+            let u = merged(found, self.u.load(simd, group), hits.u.load(simd, place));
             hits.u.store::<S>(place, u);
-            let v = found.select(self.v.load(simd, group), hits.v.load(simd, place));
+            let v = merged(found, self.v.load(simd, group), hits.v.load(simd, place));
             hits.v.store::<S>(place, v);
-            let prims = found.select(self.prims.get(simd, group).0, hits.prim.get(simd, place).0);
+            let prims = merged(
+                found,
+                self.prims.get(simd, group).0,
+                hits.prim.get(simd, place).0,
+            );
             prims.store_slice(hits.prim.group_mut(place, width));
         }
     }
@@ -160,13 +164,12 @@ impl<F: HitFilter> Query for ClosestLanes<'_, F> {
         let wins_tie = hits.t.simd_eq(limits) & this.simd_lt(prims);
         let wins = hits.mask & (hits.t.simd_lt(limits) | wins_tie);
         let wins = accepted(simd, self.filter, prim, wins, &hits);
-        self.limits.store::<S>(group, wins.select(hits.t, limits));
+        self.limits.store::<S>(group, merged(wins, hits.t, limits));
         let u = self.u.load(simd, group);
-        self.u.store::<S>(group, wins.select(hits.u, u));
+        self.u.store::<S>(group, merged(wins, hits.u, u));
         let v = self.v.load(simd, group);
-        self.v.store::<S>(group, wins.select(hits.v, v));
-        wins.select(this, prims)
-            .store_slice(self.prims.group_mut(group, width));
+        self.v.store::<S>(group, merged(wins, hits.v, v));
+        merged(wins, this, prims).store_slice(self.prims.group_mut(group, width));
         self.found |= wins.to_bitmask() << (group * width);
     }
 }

@@ -26,9 +26,9 @@ use glam::Vec3;
 use super::{Counters, Frame};
 use crate::geometry::{CachedHit, HitLanes, RayLanes, TriangleAttributes};
 use crate::math::lanes::{Lanes, PlaceSet};
-use crate::math::simd::{Simd, SimdBase as _};
+use crate::math::simd::{Simd, SimdBase as _, merged};
 use crate::math::wide::{Wide, WideMask};
-use crate::math::{LinearRgb, Real as _, V3};
+use crate::math::{LinearRgb, V3};
 use crate::surface::displaced::Tracer;
 use crate::surface::{FacetKind, SmoothedPoint};
 
@@ -360,7 +360,7 @@ fn set3<S: Simd>(columns: &mut Column3, group: usize, mask: WideMask<S>, v: V3<W
 fn set<S: Simd>(column: &mut Column, group: usize, mask: WideMask<S>, x: Wide<S>) {
     use crate::math::simd::ExtractToken as _;
     let old = column.get(x.0.token(), group);
-    column.set(group, Wide::select(mask, x, old));
+    column.set(group, Wide::<S>(merged(mask.0, x.0, old.0)));
 }
 
 /// One colour per lane of a group.

@@ -11,7 +11,7 @@ use crate::geometry::{HitLanes, NO_HIT};
 use crate::math::lanes::ones;
 use crate::math::simd::{Kernel, Simd, SimdBase as _, SimdLevel, SimdMask as _};
 use crate::math::wide::{Wide, WideBits};
-use crate::math::{Bits as _, LinearRgb, Mask as _, Real as _, V3};
+use crate::math::{Bits as _, LinearRgb, Mask as _, Real as _, V2, V3};
 use crate::scene::TextureFilter;
 use crate::surface::mapping::relief::{Found, ReliefField, found, landed, sinking_ray, view_ray};
 use crate::surface::{BakedFrame, FacetKind, SurfaceInteraction, SurfaceParts, footprint};
@@ -225,6 +225,7 @@ impl Kernel for MapRun<'_> {
         let searches = self.run.searches;
         let walked = material.mapping.walks().is_some() && searches;
         let mut facets = Facets::new(self.frame, self.run.kind);
+        let mut last_uv = None;
         for group in self.run.places.groups::<S>() {
             let mask = self.run.places.mask(simd, group);
             let mut s = facets.surface(simd, (&self.run, group), self.rays, self.hits);
@@ -267,6 +268,10 @@ impl Kernel for MapRun<'_> {
                 s.n_shade = s.n_geo;
             }
             let diffuse = diffuse(material, self.run.kind.parts, &s);
+            if let Some(last) = last_uv {
+                prefetch(material, perturbed, s.uv + (s.uv - last));
+            }
+            last_uv = Some(s.uv);
             // Perturbed on the front side; an eye behind it sees the other side of the same relief.
             let from_behind = s.wo.dot(s.n_geo).lt(Wide::new(simd, 0.0));
             let n_geo = V3::select(from_behind, -s.n_geo, s.n_geo);
@@ -364,6 +369,18 @@ pub fn slope_variance<F: crate::math::Real>(
         SurfaceParts::Gradients => material.mapping.slope_variance(s),
         _ => s.footprint.splat(0.0),
     })
+}
+
+/// Has memory bring what the next points look up, which the maps are finer than the picture for it to know: from one
+/// group to the next texture coordinates go on much as they did before.
+#[inline(always)]
+fn prefetch<F: crate::math::Real>(material: &FrameMaterial<'_>, perturbed: bool, uv: V2<F>) {
+    if perturbed {
+        material.mapping.prefetch(uv);
+    }
+    if let Some(albedo) = &material.albedo {
+        albedo.prefetch(uv);
+    }
 }
 
 /// The diffuse colour at a point.

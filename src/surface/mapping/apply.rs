@@ -190,6 +190,15 @@ impl<'a> MaterialMapping<'a> {
         self.tilt.apply(s);
     }
 
+    /// Has memory bring what points that are seen around `uv` will look up soon, searches left out.
+    #[inline(always)]
+    pub fn prefetch<F: Real>(&self, uv: V2<F>) {
+        if let Shift::Parallax(h) | Shift::Limited(h) = &self.shift {
+            h.prefetch(uv);
+        }
+        self.tilt.prefetch(uv);
+    }
+
     #[inline(always)]
     fn shift<F: Real>(
         &self,

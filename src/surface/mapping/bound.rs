@@ -81,6 +81,15 @@ impl BoundHeight<'_> {
         self.map.sample(st, self.addressing.wrap) * self.scale + self.offset
     }
 
+    /// Has memory bring what will be looked up at `uv` soon, if the map is read at points.
+    #[inline(always)]
+    pub fn prefetch<F: Real>(&self, uv: V2<F>) {
+        if self.mips.is_none() {
+            self.map
+                .prefetch(self.addressing.st(uv), self.addressing.wrap);
+        }
+    }
+
     /// The same as its mean over the footprint of a point.
     #[inline(always)]
     #[must_use]
@@ -265,6 +274,15 @@ impl BoundNormal<'_> {
             V3::new(unmirrored(x, st.x), unmirrored(y, st.y), z)
         } else {
             V3::new(x, y, z)
+        }
+    }
+
+    /// Has memory bring what will be looked up at `uv` soon, if the map is read at points.
+    #[inline(always)]
+    pub fn prefetch<F: Real>(&self, uv: V2<F>) {
+        if self.mips.is_none() {
+            self.map
+                .prefetch(self.addressing.st(uv), self.addressing.wrap);
         }
     }
 

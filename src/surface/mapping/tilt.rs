@@ -60,6 +60,16 @@ impl<'a> Tilt<'a> {
         }
     }
 
+    /// Has memory bring what will be looked up at `uv` soon.
+    #[inline(always)]
+    pub(super) fn prefetch<F: Real>(&self, uv: V2<F>) {
+        match self {
+            Self::Keep => {}
+            Self::Analytic(h) | Self::Central(h) => h.prefetch(uv),
+            Self::Normal(n) | Self::Baked(n) | Self::Object(n) | Self::Slope(n) => n.prefetch(uv),
+        }
+    }
+
     #[inline(always)]
     pub(super) fn apply<F: Real>(&self, s: &mut SurfaceInteraction<F>) {
         match self {

@@ -93,22 +93,3 @@ fn turned<F: Real>(cell: F, count: f32) -> F {
     let turned = F::select(turned.lt(zero), turned + count, turned);
     F::select(turned.ge(count_each), turned - count, turned)
 }
-
-/// Fractions of 65535 from the lower and the upper half of 32 bits.
-#[inline(always)]
-pub(super) fn fractions<B: Bits>(both: B) -> [B::Real; 2] {
-    let unit = 1.0 / 65_535.0;
-    [
-        both.and(0xffff).signed_to_real() * unit,
-        both.shr(16).signed_to_real() * unit,
-    ]
-}
-
-/// Smallest and largest of four nodes.
-#[inline(always)]
-pub(super) fn extremes<F: Real>([a, b, c, d]: [[F; 2]; 4]) -> [F; 2] {
-    [
-        a[0].smaller(b[0]).smaller(c[0].smaller(d[0])),
-        a[1].larger(b[1]).larger(c[1].larger(d[1])),
-    ]
-}

@@ -1,6 +1,8 @@
 //! [`Axis`](super::axis::Axis) in vector lanes: whole numbers are doubles, too.
 
-use crate::math::simd::{ExtractToken as _, Select as _, Simd, SimdBase as _, SimdFloat as _};
+use crate::math::simd::{
+    ExtractToken as _, Select as _, Simd, SimdBase as _, SimdFloat as _, merged,
+};
 
 /// Where walks stand along one axis.
 #[derive(Clone, Copy)]
@@ -49,11 +51,11 @@ impl<S: Simd> LaneAxis<S> {
         let (under, over) = (rest.simd_lt(zero), rest.simd_ge(n));
         let tile = under.select(tile - 1.0, over.select(tile + 1.0, tile));
         let base = tile * n;
-        self.start = taken.select(start, self.start);
-        self.rate = taken.select(rate, self.rate);
-        self.inv_rate = taken.select(one / rate.abs(), self.inv_rate);
-        self.base = taken.select(base, self.base);
-        self.local = taken.select(cell - base, self.local);
+        self.start = merged(taken, start, self.start);
+        self.rate = merged(taken, rate, self.rate);
+        self.inv_rate = merged(taken, one / rate.abs(), self.inv_rate);
+        self.base = merged(taken, base, self.base);
+        self.local = merged(taken, cell - base, self.local);
         self.forward = self.rate.simd_ge(0.0);
     }
 
@@ -106,8 +108,8 @@ impl<S: Simd> LaneAxis<S> {
         let beyond = forward.select(span.end, span.first - 1.0);
         let turned = forward.select(zero, n - 1.0);
         let moved = self.base + forward.select(n, -n);
-        self.local = mask.select(wraps.select(turned, beyond), self.local);
-        self.base = (mask & wraps).select(moved, self.base);
+        self.local = merged(mask, wraps.select(turned, beyond), self.local);
+        self.base = merged(mask & wraps, moved, self.base);
         // Of two squares that share one of the next level, the even one is first.
         let pair = (span.square * 0.5).floor();
         let odd = !(pair + pair).simd_eq(span.square);
@@ -120,6 +122,6 @@ impl<S: Simd> LaneAxis<S> {
     pub fn settle(&mut self, span: LaneSpan<S>, tau: S::f64s, mask: S::mask64s) {
         let cell = (self.at(tau) - self.base).floor();
         let cell = cell.max(span.first).min(span.end - 1.0);
-        self.local = mask.select(cell, self.local);
+        self.local = merged(mask, cell, self.local);
     }
 }

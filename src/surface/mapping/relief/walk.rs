@@ -1,7 +1,7 @@
 //! The exact walk: where a straight ray first meets the bilinear relief.
 
 use super::axis::Axis;
-use super::cell_span::{CellSpan, extremes, fractions};
+use super::cell_span::CellSpan;
 use super::parabola::first_not_above;
 use super::walk_lanes::{Stored, walk_all};
 use crate::math::simd::SimdLevel;
@@ -284,24 +284,11 @@ impl<'a> ReliefField<'a> {
         ];
         let [low, high] = match self.stored {
             StoredHeights::U16(all) => {
-                let [[a], [b], [c], [d]] = B::gather(nodes, |node| {
-                    let [low, high] = squares.extremes(all, node as usize);
-                    [u32::from(low) | u32::from(high) << 16]
-                });
-                extremes([fractions(a), fractions(b), fractions(c), fractions(d)])
+                let unit = 1.0 / 65_535.0;
+                let [low, high] = squares.extremes_of_four(all, nodes);
+                [low * unit, high * unit]
             }
-            StoredHeights::F32(all) => {
-                let [[a, b], [c, d], [e, f], [g, h]] = B::gather(nodes, |node| {
-                    let [low, high] = squares.extremes(all, node as usize);
-                    [low.to_bits(), high.to_bits()]
-                });
-                extremes([
-                    [a.to_real(), b.to_real()],
-                    [c.to_real(), d.to_real()],
-                    [e.to_real(), f.to_real()],
-                    [g.to_real(), h.to_real()],
-                ])
-            }
+            StoredHeights::F32(all) => squares.extremes_of_four(all, nodes),
         };
         let at_low = low * height.scale + height.offset;
         let at_high = high * height.scale + height.offset;

@@ -8,9 +8,10 @@
 use super::lane_axis::LaneAxis;
 use super::parabola::{first_not_above, is_not_above};
 use super::walk::{ReliefRay, STEP_CAP, Typed, Walk};
+use crate::math::fetch::{WHOLE, wide_pairs};
 use crate::math::simd::{
     Bytes as _, ExtractToken as _, Kernel, Select as _, Simd, SimdBase as _, SimdFloat as _,
-    SimdLevel, SimdMask as _,
+    SimdLevel, SimdMask as _, merged,
 };
 use crate::texture::Wrap;
 
@@ -20,13 +21,10 @@ const MAX_LANES: usize = 8;
 /// A double for each lane, in memory.
 type Row = [f64; MAX_LANES];
 
-/// Added to whole numbers from 0 to 2³², it leaves them in the lower half of a double's bits.
-const WHOLE: f64 = 4_503_599_627_370_496.0;
-
 /// Numbers that heights are stored in.
 pub(super) trait Stored: Copy + PartialOrd + Into<f64> {
     /// For every lane the numbers at `first`, after it, at `second` and after it. Indices are [`WHOLE`] doubles.
-    fn fours<S: Simd>(simd: S, numbers: &[Self], at: [&Row; 2]) -> [S::f64s; 4];
+    fn fours<S: Simd>(simd: S, numbers: &[Self], at: [S::f64s; 2]) -> [S::f64s; 4];
 }
 
 /// A number and the one after it.
@@ -39,21 +37,15 @@ fn pair<T: Copy>(numbers: &[T], whole: f64) -> [T; 2] {
 
 impl Stored for u16 {
     #[inline(always)]
-    fn fours<S: Simd>(simd: S, numbers: &[Self], [first, second]: [&Row; 2]) -> [S::f64s; 4] {
-        let mut packed = [0_u64; MAX_LANES];
-        for lane in 0..S::f64s::LEN {
-            let ([a, b], [c, d]) = (pair(numbers, first[lane]), pair(numbers, second[lane]));
-            let upper = u64::from(a) | u64::from(b) << 16;
-            let lower = u64::from(c) | u64::from(d) << 16;
-            packed[lane] = upper | lower << 32;
-        }
-        let packed = S::u64s::from_slice(simd, &packed[..S::f64s::LEN]);
-        let low = S::u64s::splat(simd, 0xffff);
+    fn fours<S: Simd>(simd: S, numbers: &[Self], [first, second]: [S::f64s; 2]) -> [S::f64s; 4] {
+        let upper = wide_pairs::<S>(numbers, first);
+        let lower = wide_pairs::<S>(numbers, second);
+        let half = S::u64s::splat(simd, 0xffff);
         [
-            whole::<S>(simd, packed & low),
-            whole::<S>(simd, (packed >> 16) & low),
-            whole::<S>(simd, (packed >> 32) & low),
-            whole::<S>(simd, packed >> 48),
+            whole::<S>(simd, upper & half),
+            whole::<S>(simd, upper >> 16),
+            whole::<S>(simd, lower & half),
+            whole::<S>(simd, lower >> 16),
         ]
     }
 }
@@ -67,7 +59,8 @@ fn whole<S: Simd>(simd: S, x: S::u64s) -> S::f64s {
 
 impl Stored for f32 {
     #[inline(always)]
-    fn fours<S: Simd>(simd: S, numbers: &[Self], [first, second]: [&Row; 2]) -> [S::f64s; 4] {
+    fn fours<S: Simd>(simd: S, numbers: &[Self], at: [S::f64s; 2]) -> [S::f64s; 4] {
+        let (first, second) = (store::<S>(at[0]), store::<S>(at[1]));
         let mut rows = [[0.0; MAX_LANES]; 4];
         for lane in 0..S::f64s::LEN {
             let ([a, b], [c, d]) = (pair(numbers, first[lane]), pair(numbers, second[lane]));
@@ -332,8 +325,7 @@ impl<'a, S: Simd, T: Stored> LaneRelief<'a, S, T> {
         let down = is_cell.select(self.texel_row, self.node_steps[1]);
         let below = is_cell.select(self.texel_row, zero);
         let at = (first + column * right) + (row * down + WHOLE);
-        let (upper, lower) = (store::<S>(at), store::<S>(at + below));
-        T::fours(simd, self.numbers, [&upper, &lower])
+        T::fours(simd, self.numbers, [at, at + below])
     }
 }
 
@@ -428,16 +420,16 @@ impl<S: Simd> Lanes<S> {
         let z = load(simd, &seeds.line[0]) * sign;
         let z_rate = load(simd, &seeds.line[1]) * sign;
         let (size, cap) = (relief.start_size(rate, end), relief.step_cap(rate, end));
-        self.line[0] = taken.select(z, self.line[0]);
-        self.line[1] = taken.select(z_rate, self.line[1]);
-        self.inv_sinking = taken.select(one / -z_rate, self.inv_sinking);
-        self.sign = taken.select(sign, self.sign);
-        self.end = taken.select(end, self.end);
-        self.tau = taken.select(zero, self.tau);
-        self.size = taken.select(size, self.size);
-        self.inv_size = taken.select(one / size, self.inv_size);
-        self.steps = taken.select(zero, self.steps);
-        self.cap = taken.select(cap, self.cap);
+        self.line[0] = merged(taken, z, self.line[0]);
+        self.line[1] = merged(taken, z_rate, self.line[1]);
+        self.inv_sinking = merged(taken, one / -z_rate, self.inv_sinking);
+        self.sign = merged(taken, sign, self.sign);
+        self.end = merged(taken, end, self.end);
+        self.tau = merged(taken, zero, self.tau);
+        self.size = merged(taken, size, self.size);
+        self.inv_size = merged(taken, one / size, self.inv_size);
+        self.steps = merged(taken, zero, self.steps);
+        self.cap = merged(taken, cap, self.cap);
         self.busy |= taken;
     }
 
@@ -493,13 +485,17 @@ impl<S: Simd> Lanes<S> {
         let ended = self.busy & (capped | found | past_end);
         self.busy &= !ended;
         let results = &mut self.results;
-        results.steps = ended.select(self.steps, results.steps);
+        results.steps = merged(ended, self.steps, results.steps);
         results.capped = ended.select(capped, results.capped);
         results.found = ended.select(found, results.found);
-        results.tau = ended.select(tau, results.tau);
+        results.tau = merged(ended, tau, results.tau);
         let ([a, b, c], [x, y, z]) = (parabola, results.parabola);
-        results.parabola = [ended.select(a, x), ended.select(b, y), ended.select(c, z)];
-        results.len = ended.select(len, results.len);
+        results.parabola = [
+            merged(ended, a, x),
+            merged(ended, b, y),
+            merged(ended, c, z),
+        ];
+        results.len = merged(ended, len, results.len);
         self.busy.to_bitmask()
     }
 
