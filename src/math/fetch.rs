@@ -94,6 +94,7 @@ pub(super) fn words<S: Simd, T: Words<N>, const N: usize>(
     table: &[T],
     at: S::u32s,
 ) -> [S::u32s; N] {
+    const { assert!(size_of::<T>() == 4 * N, "elements without gaps") };
     let simd = at.token();
     let mut found = [at; N];
     if gathers(simd) && table.len() <= i32::MAX as usize / N {

@@ -26,13 +26,11 @@ pub struct BoundColor<'a> {
 }
 
 impl BoundColor<'_> {
-    /// Has memory bring what will be looked up at `uv` soon, if the map is read at points.
+    /// See [`Mips::prefetch`].
     #[inline(always)]
     pub fn prefetch<F: Real>(&self, uv: V2<F>) {
-        if self.mips.is_none() {
-            self.map
-                .prefetch(self.addressing.st(uv), self.addressing.wrap);
-        }
+        let place = (self.addressing.st(uv), self.addressing.wrap);
+        Mips::prefetch(self.map, self.mips.as_ref(), place);
     }
 
     /// Linear colour at `uv`, the mean over the footprint of a point.

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use glam::Vec2;
 
 use super::grid::{Decode, Floats};
-use super::mips::halvings;
+use super::mips::{Ahead, halvings};
 use super::{Grid, RawImage, Samples, Wrap};
 use crate::math::{Bits as _, LinearRgb, Real, V2, linear_from_srgb};
 
@@ -61,15 +61,6 @@ impl ColorMap {
         }
     }
 
-    /// Has memory bring what [`Self::sample`] will look up soon.
-    #[inline(always)]
-    pub fn prefetch<F: Real>(&self, st: V2<F>, wrap: Wrap) {
-        match self {
-            Self::Srgb8(g) => g.prefetch(st, wrap),
-            Self::Linear(g) => g.prefetch(st, wrap),
-        }
-    }
-
     /// The map halved again and again: means of linear colours, not rounded to bytes.
     #[must_use]
     pub fn halvings(&self) -> Vec<Self> {
@@ -99,6 +90,16 @@ impl ColorMap {
         match self {
             Self::Srgb8(g) => size_of_val(g.texels()),
             Self::Linear(g) => size_of_val(g.texels()),
+        }
+    }
+}
+
+impl Ahead for ColorMap {
+    #[inline(always)]
+    fn prefetch<F: Real>(&self, st: V2<F>, wrap: Wrap) {
+        match self {
+            Self::Srgb8(g) => g.prefetch(st, wrap),
+            Self::Linear(g) => g.prefetch(st, wrap),
         }
     }
 }

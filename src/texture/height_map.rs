@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 use super::grid::{BilinearCell, Floats};
-use super::mips::halvings;
+use super::mips::{Ahead, halvings};
 use super::{Channel, Grid, RawImage, Samples, Wrap};
 use crate::math::{Bits as _, Mask as _, Real, V2};
 
@@ -122,15 +122,6 @@ impl HeightMap {
         cell.mix(corners)
     }
 
-    /// Has memory bring what [`Self::sample`] will look up soon.
-    #[inline(always)]
-    pub fn prefetch<F: Real>(&self, st: V2<F>, wrap: Wrap) {
-        match self {
-            Self::U16(g) => g.prefetch(st, wrap),
-            Self::F32(g) => g.prefetch(st, wrap),
-        }
-    }
-
     /// Bilinear value and its analytic derivative: exact for the bilinear surface, discontinuous at
     /// texel lines.
     #[must_use]
@@ -179,6 +170,16 @@ impl HeightMap {
     #[inline(always)]
     pub fn size(&self) -> Vec2 {
         Vec2::new(self.width() as f32, self.height() as f32)
+    }
+}
+
+impl Ahead for HeightMap {
+    #[inline(always)]
+    fn prefetch<F: Real>(&self, st: V2<F>, wrap: Wrap) {
+        match self {
+            Self::U16(g) => g.prefetch(st, wrap),
+            Self::F32(g) => g.prefetch(st, wrap),
+        }
     }
 }
 

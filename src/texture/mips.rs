@@ -1,7 +1,7 @@
 //! Maps halved again and again, and means over what a ray's cone covers.
 
-use super::Grid;
-use crate::math::{Bits as _, Mask as _, Real};
+use super::{Grid, Wrap};
+use crate::math::{Bits as _, Mask as _, Real, V2};
 
 /// One way of reading a map at a place.
 pub trait Look<F: Real, const N: usize> {
@@ -10,6 +10,12 @@ pub trait Look<F: Real, const N: usize> {
 
     /// The numbers at the place.
     fn at(&self, map: &Self::Map) -> [F; N];
+}
+
+/// A map that can be asked for ahead.
+pub trait Ahead {
+    /// Has memory bring what will be looked up around `st` soon.
+    fn prefetch<F: Real>(&self, st: V2<F>, wrap: Wrap);
 }
 
 /// The halvings of a map that is tied to a material.
@@ -30,6 +36,18 @@ impl<T> Clone for Mips<'_, T> {
 impl<T> Copy for Mips<'_, T> {}
 
 impl<T> Mips<'_, T> {
+    /// Has memory bring what will be looked up soon of a map that is read at points. Which halvings are read of
+    /// others is not known yet.
+    #[inline(always)]
+    pub fn prefetch<F: Real>(base: &T, mips: Option<&Self>, (st, wrap): (V2<F>, Wrap))
+    where
+        T: Ahead,
+    {
+        if mips.is_none() {
+            base.prefetch(st, wrap);
+        }
+    }
+
     /// What `base` and its halvings give over a square of `footprint` units of texture coordinates: two levels,
     /// each bilinear, mixed by the logarithm of the footprint in texels. Without halvings, what `base` alone
     /// gives.

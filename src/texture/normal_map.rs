@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::grid::{Decode, Floats};
-use super::mips::halvings;
+use super::mips::{Ahead, halvings};
 use super::{Grid, MapRole, RawImage, Samples, Wrap};
 use crate::math::{Bits as _, Real, V2, V3, normalize_or};
 
@@ -61,16 +61,6 @@ impl NormalMap {
         V3::new(x * factor - 1.0, y * factor - 1.0, z * factor - 1.0)
     }
 
-    /// Has memory bring what [`Self::sample`] will look up soon.
-    #[inline(always)]
-    pub fn prefetch<F: Real>(&self, st: V2<F>, wrap: Wrap) {
-        match self {
-            Self::U8(g) => g.prefetch(st, wrap),
-            Self::U16(g) => g.prefetch(st, wrap),
-            Self::F32(g) => g.prefetch(st, wrap),
-        }
-    }
-
     /// The map halved again and again: means of stored vectors, brought to unit length before (so that rounding
     /// does not pass for roughness) and not after. Of slopes, whose third number means nothing, as they are.
     #[must_use]
@@ -123,6 +113,17 @@ impl NormalMap {
             Self::U8(g) => size_of_val(g.texels()),
             Self::U16(g) => size_of_val(g.texels()),
             Self::F32(g) => size_of_val(g.texels()),
+        }
+    }
+}
+
+impl Ahead for NormalMap {
+    #[inline(always)]
+    fn prefetch<F: Real>(&self, st: V2<F>, wrap: Wrap) {
+        match self {
+            Self::U8(g) => g.prefetch(st, wrap),
+            Self::U16(g) => g.prefetch(st, wrap),
+            Self::F32(g) => g.prefetch(st, wrap),
         }
     }
 }

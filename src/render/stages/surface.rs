@@ -268,7 +268,9 @@ impl Kernel for MapRun<'_> {
                 s.n_shade = s.n_geo;
             }
             let diffuse = diffuse(material, self.run.kind.parts, &s);
-            if let Some(last) = last_uv {
+            if self.run.kind.parts >= SurfaceParts::Uv
+                && let Some(last) = last_uv
+            {
                 prefetch(material, perturbed, s.uv + (s.uv - last));
             }
             last_uv = Some(s.uv);
@@ -371,8 +373,8 @@ pub fn slope_variance<F: crate::math::Real>(
     })
 }
 
-/// Has memory bring what the next points look up, which the maps are finer than the picture for it to know: from one
-/// group to the next texture coordinates go on much as they did before.
+/// Has memory bring what the next points will probably look up. From one group to the next texture coordinates mostly go
+/// on as they did before, but across the rows of a picture, where processors do not see that by themselves.
 #[inline(always)]
 fn prefetch<F: crate::math::Real>(material: &FrameMaterial<'_>, perturbed: bool, uv: V2<F>) {
     if perturbed {

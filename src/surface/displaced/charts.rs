@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::Reliefs;
-use super::fine::Cut;
+use super::parts::Cut;
 use super::pieces::{self, Cutting, Piece};
 use super::seams::Seams;
 use crate::geometry::TriangleMesh;

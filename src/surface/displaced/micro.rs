@@ -6,7 +6,8 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::fine::{self, MicroHit, PARTS, PartKey, Patch};
+use super::fine::{MicroHit, PartKey, Patch};
+use super::parts::{self, PARTS};
 use super::{DisplacedMesh, Displacement};
 use crate::geometry::Hit;
 use crate::geometry::bvh::Bvh;
@@ -34,7 +35,7 @@ impl MicroMesh {
     pub fn bytes_for(displacement: &Displacement) -> usize {
         let leaves: usize = displacement
             .cuts()
-            .map(|(_, cut)| fine::leaf_count(cut))
+            .map(|(_, cut)| parts::leaf_count(cut))
             .sum();
         leaves * size_of::<PartKey>() + Bvh::bytes_of_groups(leaves * GROUPS)
     }
@@ -49,7 +50,11 @@ impl MicroMesh {
         let leaves: Vec<PartKey> = mesh
             .displacement
             .cuts()
-            .flat_map(|(piece, cut)| fine::leaves(cut).into_iter().map(move |leaf| (piece, leaf)))
+            .flat_map(|(piece, cut)| {
+                parts::leaves(cut)
+                    .into_iter()
+                    .map(move |leaf| (piece, leaf))
+            })
             .collect();
         let mut groups = vec![[[[0.0; LANES]; 3]; 3]; leaves.len() * GROUPS];
         let parts = leaves.par_chunks(TOGETHER);

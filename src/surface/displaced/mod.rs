@@ -9,6 +9,7 @@
 //! - `flat`: where `n` is constant: the exact walk answers, nothing is cut up
 //! - `pieces`: elsewhere: which pieces of much the same size triangles fall into
 //! - `fine`: micro-triangles of pieces, made where rays come, from a tree that is nowhere stored
+//! - `parts`: which parts a part falls into
 //! - `cells`: which displacements their parts have
 //! - `local`: which of their parts a ray can meet
 //! - `micro`: the same micro-triangles all at once, in a tree of their own, where memory allows
@@ -24,6 +25,7 @@ mod fine;
 mod flat;
 mod local;
 mod micro;
+mod parts;
 mod pieces;
 mod seams;
 mod smooth;
@@ -42,8 +44,8 @@ use crate::surface::mapping::relief::ReliefField;
 use crate::texture::Addressing;
 
 use charts::Shape;
-use fine::Cut;
 pub use micro::MicroMesh;
+use parts::Cut;
 use pieces::Piece;
 pub use seams::SeamReport;
 use seams::Seams;

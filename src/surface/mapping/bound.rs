@@ -81,13 +81,11 @@ impl BoundHeight<'_> {
         self.map.sample(st, self.addressing.wrap) * self.scale + self.offset
     }
 
-    /// Has memory bring what will be looked up at `uv` soon, if the map is read at points.
+    /// See [`Mips::prefetch`].
     #[inline(always)]
     pub fn prefetch<F: Real>(&self, uv: V2<F>) {
-        if self.mips.is_none() {
-            self.map
-                .prefetch(self.addressing.st(uv), self.addressing.wrap);
-        }
+        let place = (self.addressing.st(uv), self.addressing.wrap);
+        Mips::prefetch(self.map, self.mips.as_ref(), place);
     }
 
     /// The same as its mean over the footprint of a point.
@@ -277,13 +275,11 @@ impl BoundNormal<'_> {
         }
     }
 
-    /// Has memory bring what will be looked up at `uv` soon, if the map is read at points.
+    /// See [`Mips::prefetch`].
     #[inline(always)]
     pub fn prefetch<F: Real>(&self, uv: V2<F>) {
-        if self.mips.is_none() {
-            self.map
-                .prefetch(self.addressing.st(uv), self.addressing.wrap);
-        }
+        let place = (self.addressing.st(uv), self.addressing.wrap);
+        Mips::prefetch(self.map, self.mips.as_ref(), place);
     }
 
     /// Variance of a slope map's slopes over the footprint of a point, the mean of both axes.
