@@ -44,16 +44,6 @@ impl Tangents {
         Self(chart.tangents)
     }
 
-    /// Those of a triangle's corners.
-    ///
-    /// # Panics
-    /// If `prim` is out of range.
-    #[inline]
-    #[must_use]
-    pub fn of(&self, prim: u32) -> [Tangent; 3] {
-        self.0[prim as usize]
-    }
-
     /// Those of all corners, three for each triangle.
     #[inline]
     #[must_use]

@@ -192,8 +192,9 @@ pub(super) fn prefetch<S: Simd, T>(table: &[T], at: S::u32s) {
     }
 }
 
+/// A number in the lower half, the one after it in the upper.
 #[inline(always)]
-fn pair(table: &[u16], index: usize) -> u32 {
+pub(super) fn pair(table: &[u16], index: usize) -> u32 {
     let both = &table[index..index + 2];
     u32::from(both[0]) | u32::from(both[1]) << 16
 }

@@ -10,7 +10,7 @@
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use super::fetch::Words;
+use super::fetch::{self, Words};
 
 /// Numbers with the rounding of `f32`.
 pub trait Real:
@@ -326,7 +326,6 @@ impl Bits for u32 {
     }
     #[inline(always)]
     fn fetch_pair(self, table: &[u16]) -> Self {
-        let both = &table[self as usize..self as usize + 2];
-        Self::from(both[0]) | Self::from(both[1]) << 16
+        fetch::pair(table, self as usize)
     }
 }

@@ -183,13 +183,13 @@ impl<'a, 'm> Patch<'a, 'm> {
     fn meet_leaf<S: Simd>(
         &self,
         simd: S,
-        door: Door<'_, '_>,
+        reliefs: &Reliefs<'_, '_>,
         ray: &FineRay,
         part: &Part,
         best: &mut Best,
     ) {
         let leaf = [part.a, part.b, part.size];
-        let points = self.leaf_points(simd, door, leaf);
+        let points = self.leaf_points(simd, reliefs, leaf);
         for i in ones(ray.test.may_pass(simd, &points, &TRIANGLES)) {
             let corners = TRIANGLES.map(|vertices| {
                 let vertex = vertices[i % PARTS] % PARTS;
@@ -222,10 +222,10 @@ impl<'a, 'm> Patch<'a, 'm> {
     pub fn leaf_corners<S: Simd>(
         &self,
         simd: S,
-        door: Door<'_, '_>,
+        reliefs: &Reliefs<'_, '_>,
         leaf: [i32; 3],
     ) -> [Corners8; 2] {
-        let points = self.leaf_points(simd, door, leaf);
+        let points = self.leaf_points(simd, reliefs, leaf);
         let mut corners: [Corners8; 2] = [[[[0.0; LANES]; 3]; 3]; 2];
         for (k, vertices) in TRIANGLES.into_iter().enumerate() {
             for (i, vertex) in vertices.into_iter().enumerate() {
@@ -239,7 +239,12 @@ impl<'a, 'm> Patch<'a, 'm> {
 
     /// Positions of the vertices of a part with four segments.
     #[inline(always)]
-    fn leaf_points<S: Simd>(&self, simd: S, door: Door<'_, '_>, [a0, b0, s]: [i32; 3]) -> [Row; 3] {
+    fn leaf_points<S: Simd>(
+        &self,
+        simd: S,
+        reliefs: &Reliefs<'_, '_>,
+        [a0, b0, s]: [i32; 3],
+    ) -> [Row; 3] {
         // Whole numbers below 2²⁴ and powers of two: nothing is rounded.
         let per_segment = self.per_segment();
         let quarter = (s / 4) as f32 * per_segment;
@@ -263,7 +268,7 @@ impl<'a, 'm> Patch<'a, 'm> {
             }
         }
         if let Some(seams) = &self.seams {
-            self.mend((seams, door.0), &places, &mut points);
+            self.mend((seams, reliefs), &places, &mut points);
         }
         points
     }
@@ -413,7 +418,7 @@ pub type Door<'a, 'm> = (&'a Reliefs<'a, 'm>, &'a Displacement);
 
 /// Meets pieces one after the other.
 pub struct Meeting<'a, 'm> {
-    door: Door<'a, 'm>,
+    reliefs: &'a Reliefs<'a, 'm>,
     /// Displacements that none on a seam leaves.
     seam_range: [f32; 2],
     /// Kept from one to the next only so that it need not be made anew.
@@ -423,10 +428,10 @@ pub struct Meeting<'a, 'm> {
 }
 
 impl<'a, 'm> Meeting<'a, 'm> {
-    pub fn new(door: Door<'a, 'm>) -> Self {
+    pub fn new(reliefs: &'a Reliefs<'a, 'm>) -> Self {
         Self {
-            door,
-            seam_range: seams::range(door.0).map(|d| d as f32),
+            reliefs,
+            seam_range: seams::range(reliefs).map(|d| d as f32),
             stack: [Part::NONE; STACK],
             counters: FineCounters::default(),
         }
@@ -445,7 +450,7 @@ impl<'a, 'm> Meeting<'a, 'm> {
         ray: &FineRay,
         (mut best, any): (Best, bool),
     ) -> Best {
-        let (door, stack) = (self.door, &mut self.stack);
+        let (reliefs, stack) = (self.reliefs, &mut self.stack);
         let local = LocalRay::new(ray, frame);
         // Boxes lie along the axes of space: many pieces whose boxes are met are flown over.
         let whole = ([0.0, 0.0, 1.0], 1.0);
@@ -461,7 +466,7 @@ impl<'a, 'm> Meeting<'a, 'm> {
             }
             if part.size.abs() == 4 {
                 self.counters.leaves += 1;
-                patch.meet_leaf(simd, door, ray, &part, &mut best);
+                patch.meet_leaf(simd, reliefs, ray, &part, &mut best);
                 if any && best.hit.is_some() {
                     return best;
                 }

@@ -146,7 +146,7 @@ impl Kernel for Fill<'_, '_> {
                 last = Patch::new(mesh, door, piece).map(|patch| (piece, patch));
             }
             if let Some((_, patch)) = &last {
-                groups.copy_from_slice(&patch.leaf_corners(simd, door, leaf));
+                groups.copy_from_slice(&patch.leaf_corners(simd, &reliefs, leaf));
             }
         }
     }

@@ -29,15 +29,17 @@ const fn cut() -> [[i32; 3]; PARTS] {
 }
 
 /// The same, `[anchor, anchor, size][part]`.
-pub const CUTS: [Row; 3] = cuts();
+pub const CUTS: [Row; 3] = rows(&CUT);
 
-const fn cuts() -> [Row; 3] {
-    let mut rows = [Row::splat(0.0); 3];
+/// A table by columns. Places that are left over repeat its last line.
+const fn rows<const K: usize, const N: usize>(table: &[[i32; K]; N]) -> [Row; K] {
+    let mut rows = [Row::splat(0.0); K];
     let mut i = 0;
     while i < PARTS {
+        let line = table[if i < N { i } else { N - 1 }];
         let mut k = 0;
-        while k < 3 {
-            rows[k].0[i] = CUT[i][k] as f32;
+        while k < K {
+            rows[k].0[i] = line[k] as f32;
             k += 1;
         }
         i += 1;
@@ -67,19 +69,7 @@ const fn grid() -> [[i32; 2]; VERTICES] {
 }
 
 /// The same, `[axis][vertex]`. The place that is left over repeats the last vertex.
-pub const GRID_ROWS: [Row; 2] = grid_rows();
-
-const fn grid_rows() -> [Row; 2] {
-    let mut rows = [Row::splat(0.0); 2];
-    let mut i = 0;
-    while i < PARTS {
-        let [a, b] = GRID[if i < VERTICES { i } else { VERTICES - 1 }];
-        rows[0].0[i] = a as f32;
-        rows[1].0[i] = b as f32;
-        i += 1;
-    }
-    rows
-}
+pub const GRID_ROWS: [Row; 2] = rows(&GRID);
 
 /// Index in [`GRID`].
 const fn vertex(a: i32, b: i32) -> usize {

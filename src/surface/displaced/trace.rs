@@ -326,7 +326,7 @@ impl Kernel for Visit<'_, '_, '_> {
             asked, rays, jobs, ..
         } = self.tracer;
         let door = (&reliefs, displacement);
-        let mut meeting = Meeting::new(door);
+        let mut meeting = Meeting::new(&reliefs);
         for (index, (asked, &ray)) in asked.iter_mut().zip(&*rays).enumerate() {
             if index % RAYS_BETWEEN_STOPS == 0 && (self.stop)() {
                 break;

@@ -92,7 +92,7 @@ fn baked(mesh: &TriangleMesh, tangents: &Tangents, (prim, weights): (u32, [f64; 
         |value: &dyn Fn(usize) -> DVec3| (0..3).map(|k| value(k) * weights[k]).sum::<DVec3>();
     let p = mean(&|k| mesh.positions[corners[k]].as_dvec3());
     let n = mean(&|k| mesh.normals[corners[k]].as_dvec3());
-    let corner = tangents.of(prim);
+    let corner = &tangents.corners()[3 * prim as usize..];
     let t = mean(&|k| Vec3::from_slice(&corner[k][..3]).as_dvec3());
     let b = n.cross(t) * f64::from(corner[0][3]);
     let frame = DMat3::from_cols(t, b, n);
