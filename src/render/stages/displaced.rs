@@ -29,8 +29,7 @@ pub fn closest_hits(
     lanes.places = Places::EMPTY;
     let ends = rays.lanes.t_max;
     let mut passage = Passage::default();
-    for (index, place) in places.iter().enumerate() {
-        let mut hit = tracer.hit(mesh, index);
+    for (place, mut hit) in places.iter().zip(tracer.hits(mesh)) {
         if displaced.has_holes {
             let (ray, t_max) = (rays.lanes.ray(place), ends.0[place]);
             hit = hit.and_then(|hit| passage.past_holes(frame, &ray, t_max, hit));

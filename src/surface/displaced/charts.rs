@@ -1,4 +1,6 @@
-//! Which displaced triangles are flat reliefs, and how the others are cut up.
+//! Which displaced triangles are flat reliefs, which of them are walked as one, and how the others are cut up.
+
+use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
 
@@ -6,6 +8,7 @@ use super::Reliefs;
 use super::parts::Cut;
 use super::pieces::{self, Cutting, Piece};
 use super::seams::Seams;
+use super::sheets::Sheet;
 use crate::geometry::TriangleMesh;
 use crate::math::Groups;
 
@@ -14,6 +17,8 @@ use crate::math::Groups;
 pub enum Shape {
     /// Its displacement normal is constant: a height field over a flat chart.
     Flat,
+    /// It and others of the plane are one such, by the number of their sheet.
+    Sheet(u32),
     /// It is cut into micro-triangles.
     Fine(Cut),
 }
@@ -25,16 +30,25 @@ const SAME_DIRECTION: f64 = 1e-5;
 /// A triangle this nearly along its displacement normal (sine) is no height field.
 const MIN_SLOPE: f64 = 1e-3;
 
-/// What displaced triangles fall into. Triangles that hang together by a corner are all flat, or all cut up, their
+/// What displaced triangles fall into.
+#[derive(Debug)]
+pub struct Charts {
+    pub pieces: Vec<Piece>,
+    pub sheets: Vec<Sheet>,
+    /// Triangles that are flat reliefs.
+    pub flat: usize,
+}
+
+/// Cuts up displaced triangles, or puts them together. Triangles that hang together by a corner are all flat, or all cut up, their
 /// pieces with as many segments along every edge, so that no crack opens between them. Flat parts get their mean
 /// normal.
-pub fn pieces(
+pub fn charts(
     mesh: &TriangleMesh,
     reliefs: &Reliefs<'_, '_>,
     prims: &[u32],
     (places, seams): (&[u32], &Seams),
     normals: &mut [Vec3],
-) -> Vec<Piece> {
+) -> Charts {
     let parts = parts(mesh, prims, places);
     let count = parts.iter().map(|part| part + 1).max().unwrap_or(0) as usize;
     let mut sums = vec![DVec3::ZERO; count];
@@ -74,15 +88,33 @@ pub fn pieces(
         .map(|(prim, _)| prim)
         .collect();
     let cutting = Cutting::new(mesh, reliefs, &fine, places);
-    let mut pieces = Vec::with_capacity(prims.len());
+    let mut flat: HashMap<u32, Vec<u32>> = HashMap::new();
+    for (prim, part) in both().filter(|(_, part)| !is_fine(*part)) {
+        flat.entry(part).or_default().push(prim);
+    }
+    let mut pieces = Vec::with_capacity(fine.len());
+    let mut sheets = Vec::new();
     for (prim, part) in both() {
         if !is_fine(part) {
-            pieces.push(Piece {
-                prim,
-                shape: Shape::Flat,
-                order: [0, 1, 2],
-                corners: pieces::ALL,
-            });
+            // With the first of them come all.
+            let Some(prims) = flat.remove(&part) else {
+                continue;
+            };
+            let normal = means[part as usize].as_vec3().as_dvec3();
+            let mut push = |prim: u32, shape: Shape| {
+                pieces.push(Piece {
+                    prim,
+                    shape,
+                    order: [0, 1, 2],
+                    corners: pieces::ALL,
+                });
+            };
+            if let Some(sheet) = Sheet::new(mesh, reliefs, &prims, normal) {
+                push(prim, Shape::Sheet(sheets.len() as u32));
+                sheets.push(sheet);
+            } else {
+                prims.into_iter().for_each(|prim| push(prim, Shape::Flat));
+            }
             continue;
         }
         let segments_log2 = pieces::segments_log2(texels[part as usize].min(cutting.length()));
@@ -102,7 +134,11 @@ pub fn pieces(
             true
         });
     }
-    pieces
+    Charts {
+        pieces,
+        sheets,
+        flat: prims.len() - fine.len(),
+    }
 }
 
 /// Length of a triangle's longest edge in texels.
@@ -128,7 +164,7 @@ fn parts(mesh: &TriangleMesh, prims: &[u32], places: &[u32]) -> Vec<u32> {
         groups.join(a, b);
         groups.join(a, c);
     }
-    let mut numbers = std::collections::HashMap::new();
+    let mut numbers = HashMap::new();
     let mut number = |prim: &u32| {
         let place = places[mesh.indices[*prim as usize][0] as usize];
         let next = numbers.len() as u32;

@@ -1,68 +1,132 @@
-//! A displaced triangle whose displacement normal is constant: the exact walk between its three sides.
+//! A displaced triangle, or a sheet of them, whose displacement normal is constant: the exact walk between its sides.
 
 use glam::{DVec3, Vec3};
 
+use super::charts::Shape;
+use super::pieces::Piece;
+use super::sheets::{Edge, Sheet, TRIANGLE};
 use super::trace::SurfaceHit;
 use super::{Displacement, Reliefs};
 use crate::geometry::{Ray, TriangleMesh};
 use crate::surface::mapping::relief::{ReliefField, ReliefRay, Side};
 
-/// Share of a triangle's width by which it reaches over its edges, so that no ray slips between neighbours.
+/// Share of a chart's width by which it reaches over its edges, so that no ray slips between neighbours.
 /// A thousandth of what a float can tell.
 const OVERLAP: f64 = 1e-10;
 
 /// More than what a dozen operations in doubles round by, as a share of the largest number among them.
 const ROUNDING: f64 = 1e-14;
 
-/// One relief over a flat chart, with the axes of its own: weights of the second and third corner, and the
-/// displacement along the normal.
+/// The axes of a flat chart: weights of the second and third of three corners, and the displacement along a normal that
+/// need not be upright.
+#[derive(Debug, Clone, Copy)]
+pub struct Axes {
+    origin: DVec3,
+    /// First edges and normal.
+    along: [DVec3; 3],
+    /// Rows of the inverse of the axes.
+    rows: [DVec3; 3],
+    /// Volume that the axes span; negative where the corners wind clockwise around the normal.
+    det: f64,
+}
+
+impl Axes {
+    pub fn new([p0, p1, p2]: [DVec3; 3], normal: DVec3) -> Self {
+        let (e1, e2, n) = (p1 - p0, p2 - p0, normal);
+        let area = e1.cross(e2);
+        let det = area.dot(n);
+        Self {
+            origin: p0,
+            along: [e1, e2, n],
+            rows: [e2.cross(n) / det, n.cross(e1) / det, area / det],
+            det,
+        }
+    }
+
+    /// Weights of the second and third corner, and the displacement.
+    #[inline(always)]
+    pub fn weights(&self, p: DVec3) -> [f64; 3] {
+        self.rates(p - self.origin)
+    }
+
+    /// Their changes along a way.
+    #[inline(always)]
+    fn rates(&self, way: DVec3) -> [f64; 3] {
+        self.rows.map(|row| row.dot(way))
+    }
+
+    /// What the displacement of a place is rounded by, at the most.
+    fn rounding(&self, p: DVec3) -> f64 {
+        self.rows[2].abs().dot((p - self.origin).abs()) * ROUNDING
+    }
+
+    /// Smallest height of the corners' triangle.
+    pub fn height(&self) -> f64 {
+        let [e1, e2, _] = self.along;
+        let longest = e1.length().max(e2.length()).max((e2 - e1).length());
+        e1.cross(e2).length() / longest
+    }
+}
+
+/// The first of three places, and the change of it by the weights of the second and third.
+pub fn by_weights([t0, t1, t2]: [[f64; 2]; 3]) -> [[f64; 2]; 3] {
+    let way = |t: [f64; 2]| [t[0] - t0[0], t[1] - t0[1]];
+    [t0, way(t1), way(t2)]
+}
+
+/// One relief over a flat chart: a triangle, or a sheet of many.
 #[derive(Debug, Clone, Copy)]
 pub struct FlatPrism<'a, 'm> {
     pub field: &'a ReliefField<'m>,
+    /// A triangle: of many the one that was met last.
     prim: u32,
-    origin: DVec3,
-    /// First edges and normal.
-    axes: [DVec3; 3],
-    /// Rows of the inverse of the axes.
-    rows: [DVec3; 3],
+    /// All triangles, if there are more than that.
+    sheet: Option<&'a Sheet>,
+    sides: &'a [Edge],
+    axes: Axes,
     /// Place of the first corner in texels, and the change of it by both weights.
     texels: [[f64; 2]; 3],
-    /// Which side of the triangle's own winding the normal is on.
-    front: f64,
 }
 
 impl<'a, 'm> FlatPrism<'a, 'm> {
-    /// `None` for a triangle without a relief.
+    /// `None` for a piece without a relief, and for one that is cut up.
     #[inline]
     pub fn new(
         mesh: &TriangleMesh,
         reliefs: &Reliefs<'a, 'm>,
-        displacement: &Displacement,
-        prim: u32,
+        displacement: &'a Displacement,
+        piece: u32,
     ) -> Option<Self> {
+        let Piece { prim, shape, .. } = displacement.pieces[piece as usize];
         let material = usize::from(mesh.attributes[prim as usize].material);
         let field = reliefs.fields.get(material)?.as_ref()?;
-        let vertices = mesh.indices[prim as usize];
-        let [p0, p1, p2] = mesh.corners(prim).map(|p| p.as_dvec3());
-        let n = displacement.normals[vertices[0] as usize].as_dvec3();
-        let (e1, e2) = (p1 - p0, p2 - p0);
-        let area = e1.cross(e2);
-        let det = area.dot(n);
-        let rows = [e2.cross(n) / det, n.cross(e1) / det, area / det];
-        let [t0, t1, t2] =
-            vertices.map(|i| field.texels_from_uv(mesh.uvs[i as usize].to_array().map(f64::from)));
-        Some(Self {
-            field,
-            prim,
-            origin: p0,
-            axes: [e1, e2, n],
-            rows,
-            texels: [
-                t0,
-                [t1[0] - t0[0], t1[1] - t0[1]],
-                [t2[0] - t0[0], t2[1] - t0[1]],
-            ],
-            front: det.signum(),
+        Some(match shape {
+            Shape::Fine(_) => return None,
+            Shape::Sheet(sheet) => {
+                let sheet = &displacement.sheets[sheet as usize];
+                Self {
+                    field,
+                    prim,
+                    sheet: Some(sheet),
+                    sides: &sheet.sides,
+                    axes: sheet.axes,
+                    texels: sheet.texels,
+                }
+            }
+            Shape::Flat => {
+                let vertices = mesh.indices[prim as usize];
+                let normal = displacement.normals[vertices[0] as usize].as_dvec3();
+                let texels = vertices
+                    .map(|i| field.texels_from_uv(mesh.uvs[i as usize].to_array().map(f64::from)));
+                Self {
+                    field,
+                    prim,
+                    sheet: None,
+                    sides: &TRIANGLE,
+                    axes: Axes::new(mesh.corners(prim).map(|p| p.as_dvec3()), normal),
+                    texels: by_weights(texels),
+                }
+            }
         })
     }
 
@@ -73,27 +137,29 @@ impl<'a, 'm> FlatPrism<'a, 'm> {
         [0, 1].map(|k| t0[k] + t1[k] * b1 + t2[k] * b2)
     }
 
-    /// The part of the ray between the triangle's sides and between the extremes of the relief, before
+    /// The material whose relief it is.
+    pub fn material(&self, mesh: &TriangleMesh) -> u16 {
+        mesh.attributes[self.prim as usize].material
+    }
+
+    /// The part of the ray between the sides and between the extremes of the relief, before
     /// `t_max`, and the distance at which it begins.
     #[inline]
     pub fn clip(&self, ray: &Ray, t_max: f64) -> Option<(ReliefRay, f64)> {
-        let o = ray.origin.as_dvec3() - self.origin;
-        let d = ray.dir.as_dvec3();
-        let [b1, b2, z] = self.rows.map(|row| row.dot(o));
-        let [r1, r2, rz] = self.rows.map(|row| row.dot(d));
+        let o = ray.origin.as_dvec3();
+        let [b1, b2, z] = self.axes.weights(o);
+        let [r1, r2, rz] = self.axes.rates(ray.dir.as_dvec3());
         let [low, high] = self.field.range();
         // And more than the displacement of a place is rounded by: a relief without any would be passed.
-        let rounding = self.rows[2].abs().dot(o.abs()) * ROUNDING;
+        let rounding = self.axes.rounding(o);
         let margin = (high - low) * 1e-6 + (high.abs() + low.abs()) * 1e-12 + rounding;
-        let inside = [
-            (b1 + OVERLAP, r1),
-            (b2 + OVERLAP, r2),
-            (1.0 + OVERLAP - b1 - b2, -r1 - r2),
-            (high + margin - z, -rz),
-            (z - low + margin, rz),
-        ];
+        let sides = self.sides.iter().map(|side| {
+            let [x, y] = side.ways;
+            (side.at + OVERLAP + x * b1 + y * b2, x * r1 + y * r2)
+        });
+        let ends = [(high + margin - z, -rz), (z - low + margin, rz)];
         let (mut from, mut to) = (0.0_f64, t_max);
-        for (value, rate) in inside {
+        for (value, rate) in sides.chain(ends) {
             let at = -value / rate;
             if rate > 0.0 {
                 from = from.max(at);
@@ -124,25 +190,33 @@ impl<'a, 'm> FlatPrism<'a, 'm> {
     }
 
     /// Everything about the point that the ray meets at distance `t`.
-    pub fn hit(&self, ray: &Ray, t: f64) -> SurfaceHit {
+    pub fn hit(&mut self, mesh: &TriangleMesh, ray: &Ray, t: f64) -> SurfaceHit {
         let way = ray.dir.as_dvec3() * t;
         let p = ray.origin.as_dvec3() + way;
         // What the walk and this rounded. Next to a plane through the origin floats tell more than that.
         let rounding = (ray.origin.as_dvec3().abs() + way.abs()) * ROUNDING;
-        let o = p - self.origin;
-        let (b1, b2) = (self.rows[0].dot(o), self.rows[1].dot(o));
+        let [b1, b2, _] = self.axes.weights(p);
         let [slope_x, slope_y] = self.field.slope(self.texels(b1, b2));
         let [_, t1, t2] = self.texels;
-        let [e1, e2, n] = self.axes;
+        let [e1, e2, n] = self.axes.along;
         let along1 = e1 + n * (slope_x * t1[0] + slope_y * t1[1]);
         let along2 = e2 + n * (slope_x * t2[0] + slope_y * t2[1]);
-        let normal = along1.cross(along2).normalize_or(n) * self.front;
+        // Towards the side of the triangles' own winding that the normal is on.
+        let normal = along1.cross(along2).normalize_or(n) * self.axes.det.signum();
         let normal: Vec3 = normal.as_vec3();
+        let weights = match self.sheet {
+            None => [b1, b2],
+            Some(sheet) => {
+                let (prim, weights) = sheet.triangle_at(mesh, [b1, b2], self.prim);
+                self.prim = prim;
+                weights
+            }
+        };
         let p = p.as_vec3();
         SurfaceHit {
             t: t as f32,
             prim: self.prim,
-            weights: [b1 as f32, b2 as f32],
+            weights: weights.map(|w| w as f32),
             p,
             // And the point once more.
             bound: (p.abs() * f32::EPSILON + rounding.as_vec3()).dot(normal.abs()),

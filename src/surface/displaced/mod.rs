@@ -6,6 +6,7 @@
 //! - `weld`: one normal for each place, so that hard edges do not tear
 //! - `seams`: edges at which texture coordinates jump; heights are averaged along them
 //! - `charts`: which triangles are flat reliefs, and how fine the others are cut up
+//! - `sheets`: which flat reliefs of many triangles are walked as one
 //! - `flat`: where `n` is constant: the exact walk answers, nothing is cut up
 //! - `pieces`: elsewhere: which pieces of much the same size triangles fall into
 //! - `fine`: micro-triangles of pieces, made where rays come, from a tree that is nowhere stored
@@ -28,6 +29,7 @@ mod micro;
 mod parts;
 mod pieces;
 mod seams;
+mod sheets;
 mod smooth;
 mod trace;
 mod weld;
@@ -43,14 +45,15 @@ use crate::math::simd::SimdLevel;
 use crate::surface::mapping::relief::ReliefField;
 use crate::texture::Addressing;
 
-use charts::Shape;
+use charts::{Charts, Shape};
 pub use micro::MicroMesh;
 use parts::Cut;
 use pieces::Piece;
 pub use seams::SeamReport;
 use seams::Seams;
+use sheets::Sheet;
 pub use smooth::{SmoothHit, SmoothPoint};
-pub use trace::{DisplacedMesh, Search, SurfaceHit, Tracer};
+pub use trace::{DisplacedMesh, Hits, Search, SurfaceHit, Tracer};
 
 /// How the reliefs of a scene are laid on its mesh.
 #[derive(Debug, Clone, Copy)]
@@ -76,6 +79,8 @@ impl<'m> Reliefs<'_, 'm> {
 pub struct Displacement {
     /// What displaced triangles fall into, in their order and in that of the boxes.
     pieces: Vec<Piece>,
+    /// Flat reliefs of many triangles.
+    sheets: Vec<Sheet>,
     /// Displaced triangles: those that are walked as flat reliefs, and those that are cut up.
     kinds: [usize; 2],
     /// Displacement normals, one for each vertex of the mesh.
@@ -104,7 +109,11 @@ impl Displacement {
         let welded = weld::weld(mesh, &prims);
         let seams = Seams::find(mesh, reliefs, &prims, &welded.places);
         let mut normals = welded.normals;
-        let pieces = charts::pieces(
+        let Charts {
+            pieces,
+            sheets,
+            flat,
+        } = charts::charts(
             mesh,
             reliefs,
             &prims,
@@ -114,13 +123,17 @@ impl Displacement {
         let (boxes, ranges): (Vec<Aabb>, Vec<[f32; 2]>) = pieces
             .par_iter()
             .with_min_len(FEW)
-            .map(|piece| prism(mesh, reliefs, &normals, piece))
+            .map(|piece| match piece.shape {
+                Shape::Sheet(sheet) => {
+                    sheet_prism((mesh, reliefs, &normals), piece, &sheets[sheet as usize])
+                }
+                _ => prism(mesh, reliefs, &normals, piece),
+            })
             .unzip();
-        let flat = pieces.iter().filter(|piece| piece.shape == Shape::Flat);
-        let flat = flat.count();
         Self {
             kinds: [flat, prims.len() - flat],
             pieces,
+            sheets,
             normals,
             seams,
             tree: BoxTree::build(&boxes),
@@ -164,7 +177,7 @@ impl Displacement {
     /// Pieces that are cut up, and how.
     fn cuts(&self) -> impl Iterator<Item = (u32, Cut)> {
         let cut = |(i, piece): (usize, &Piece)| match piece.shape {
-            Shape::Flat => None,
+            Shape::Flat | Shape::Sheet(_) => None,
             Shape::Fine(cut) => Some((i as u32, cut)),
         };
         self.pieces.iter().enumerate().filter_map(cut)
@@ -193,6 +206,12 @@ impl Displacement {
         self.kinds
     }
 
+    /// Flat reliefs of many triangles that are walked as one.
+    #[must_use]
+    pub const fn sheets(&self) -> usize {
+        self.sheets.len()
+    }
+
     /// Heap bytes, seams left out.
     #[must_use]
     pub fn bytes(&self) -> usize {
@@ -200,7 +219,24 @@ impl Displacement {
             + size_of_val(self.pieces.as_slice())
             + size_of_val(self.ranges.as_slice())
             + size_of_val(self.normals.as_slice())
+            + size_of_val(self.sheets.as_slice())
+            + self.sheets.iter().map(Sheet::bytes).sum::<usize>()
     }
+}
+
+/// Box and displacements of all triangles of a sheet.
+fn sheet_prism(
+    (mesh, reliefs, normals): (&TriangleMesh, &Reliefs<'_, '_>, &[Vec3]),
+    piece: &Piece,
+    sheet: &Sheet,
+) -> (Aabb, [f32; 2]) {
+    let triangles = sheet.prims().iter();
+    let prisms = triangles.map(|&prim| prism(mesh, reliefs, normals, &Piece { prim, ..*piece }));
+    prisms
+        .reduce(|(all, [low, high]), (hull, [least, most])| {
+            (all.union(hull), [low.min(least), high.max(most)])
+        })
+        .unwrap_or((Aabb::EMPTY, [0.0; 2]))
 }
 
 /// Box around everything that a piece's relief can reach: `p + d·n` over a triangle lies in the hull of

@@ -6,7 +6,6 @@ use super::charts::Shape;
 use super::fine::{Best, FineCounters, FineRay, Meeting, Patch, ReadyPatch};
 use super::flat::FlatPrism;
 use super::micro::MicroMesh;
-use super::pieces::Piece;
 use super::{Displacement, Reliefs};
 use crate::geometry::bvh::AcceptAll;
 use crate::geometry::triangle::Watertight;
@@ -74,17 +73,17 @@ struct Asked {
     best: Best,
     /// Whether a micro-triangle is in the way, where nobody asks which.
     blocked: bool,
-    /// Triangle of the flat relief that was met, and the distance in doubles.
+    /// Piece whose flat relief was met, and the distance in doubles.
     flat: Option<(u32, f64)>,
     /// Steps of walks, and parts cut up or made.
     steps: u64,
 }
 
-/// A walk over the flat relief of a triangle, for one of the rays.
+/// A walk over a flat relief, for one of the rays.
 #[derive(Debug, Clone, Copy)]
 struct Job {
     asked: usize,
-    prim: u32,
+    piece: u32,
     material: u16,
     /// Distance along the ray at which the walk begins.
     from: f64,
@@ -263,11 +262,11 @@ impl Tracer {
                 let Some(at) = walk.at else { continue };
                 let t = job.from + at;
                 let nearer = match asked.flat {
-                    Some((prim, known)) => t < known || (t == known && job.prim < prim),
+                    Some((piece, known)) => t < known || (t == known && job.piece < piece),
                     None => (t as f32) < asked.best.t,
                 };
                 if nearer {
-                    asked.flat = Some((job.prim, t));
+                    asked.flat = Some((job.piece, t));
                 }
             }
         }
@@ -283,20 +282,63 @@ impl Tracer {
     /// What the ray in a place of the list met.
     #[must_use]
     pub fn hit(&self, mesh: DisplacedMesh<'_, '_>, index: usize) -> Option<SurfaceHit> {
+        self.hits(mesh).at(index)
+    }
+
+    /// What the rays met, in the order of the list.
+    #[must_use]
+    pub const fn hits<'t, 'a, 'm>(&'t self, mesh: DisplacedMesh<'a, 'm>) -> Hits<'t, 'a, 'm> {
+        Hits {
+            tracer: self,
+            mesh,
+            prism: None,
+            next: 0,
+        }
+    }
+}
+
+/// What rays met, one after the other: the next often meets the same triangle.
+#[derive(Debug)]
+pub struct Hits<'t, 'a, 'm> {
+    tracer: &'t Tracer,
+    mesh: DisplacedMesh<'a, 'm>,
+    /// Flat relief that was met last, and which piece it is.
+    prism: Option<(u32, FlatPrism<'a, 'm>)>,
+    next: usize,
+}
+
+impl Hits<'_, '_, '_> {
+    fn at(&mut self, index: usize) -> Option<SurfaceHit> {
         let DisplacedMesh {
             mesh,
             reliefs,
             displacement,
             ..
-        } = mesh;
-        let asked = &self.asked[index];
-        if let Some((prim, t)) = asked.flat {
-            let prism = FlatPrism::new(mesh, &reliefs, displacement, prim)?;
-            return Some(prism.hit(&self.rays[index], t));
+        } = self.mesh;
+        let asked = &self.tracer.asked[index];
+        if let Some((piece, t)) = asked.flat {
+            if self.prism.is_none_or(|(known, _)| known != piece) {
+                let prism = FlatPrism::new(mesh, &reliefs, displacement, piece)?;
+                self.prism = Some((piece, prism));
+            }
+            let (_, prism) = self.prism.as_mut()?;
+            return Some(prism.hit(mesh, &self.tracer.rays[index], t));
         }
         let micro = asked.best.hit?;
         let patch = Patch::new(mesh, (&reliefs, displacement), micro.leaf.0)?;
         Some(patch.hit(asked.best.t, &micro))
+    }
+}
+
+impl Iterator for Hits<'_, '_, '_> {
+    type Item = Option<SurfaceHit>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.next == self.tracer.asked.len() {
+            return None;
+        }
+        self.next += 1;
+        Some(self.at(self.next - 1))
     }
 }
 
@@ -337,20 +379,19 @@ impl Kernel for Visit<'_, '_, '_> {
             let mut fine_ray = None;
             let mut boxes = displacement.tree.along(&ray);
             while let Some(i) = boxes.next(asked.best.t) {
-                let Piece { prim, shape, .. } = displacement.pieces[i as usize];
-                match shape {
-                    Shape::Flat => {
-                        let kept = &mut prisms[kept_at(prim, PRISMS_LOG2)];
-                        if kept.is_none_or(|(known, _)| known != prim) {
-                            let prism = FlatPrism::new(mesh, &reliefs, displacement, prim);
-                            *kept = prism.map(|prism| (prim, prism));
+                match displacement.pieces[i as usize].shape {
+                    Shape::Flat | Shape::Sheet(_) => {
+                        let kept = &mut prisms[kept_at(i, PRISMS_LOG2)];
+                        if kept.is_none_or(|(known, _)| known != i) {
+                            let prism = FlatPrism::new(mesh, &reliefs, displacement, i);
+                            *kept = prism.map(|prism| (i, prism));
                         }
                         let Some((_, prism)) = kept else { continue };
                         if let Some((ray, from)) = prism.clip(&ray, f64::from(asked.best.t)) {
                             jobs.push(Job {
                                 asked: index,
-                                prim,
-                                material: mesh.attributes[prim as usize].material,
+                                piece: i,
+                                material: prism.material(mesh),
                                 from,
                                 ray,
                             });

@@ -176,8 +176,12 @@ fn displacement_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
         .scene
         .normalization
         .world_length(seams.largest_gap);
-    let mut said =
-        format!("{flat} triangles walked as flat reliefs, {fine} cut up where rays come");
+    let mut said = format!("{flat} triangles walked as flat reliefs");
+    let sheets = displacement.sheets();
+    if sheets > 0 {
+        said += &format!(" (of one plane together: {sheets} such)");
+    }
+    said += &format!(", {fine} cut up where rays come");
     if seams.edges > 0 {
         said += &format!(
             "; {} seam edges, heights up to {gap:.2e} apart",

@@ -3,7 +3,7 @@
 
 use std::f32::consts::TAU;
 
-use glam::{DVec2, DVec3, Vec2, Vec3};
+use glam::{DVec2, DVec3, EulerRot, Quat, Vec2, Vec3};
 use reliefscope::geometry::bvh::{AcceptAll, Bvh};
 use reliefscope::geometry::triangle::Watertight;
 use reliefscope::geometry::{Ray, TriangleAttributes, TriangleMesh};
@@ -121,31 +121,56 @@ fn slab() -> TriangleMesh {
     mesh
 }
 
-/// A flat sheet of four quads.
-fn sheet() -> TriangleMesh {
+/// A flat sheet of quads of uneven widths, between these numbers along x and y, but for the quads that `is_hole` names.
+fn sheet([xs, ys]: [&[f32]; 2], turn: Quat, is_hole: impl Fn([usize; 2]) -> bool) -> TriangleMesh {
     let mut mesh = TriangleMesh::default();
-    for (x, y) in [(-1, -1), (0, -1), (-1, 0), (0, 0)] {
-        let corner = |dx, dy| Vec3::new((x + dx) as f32, (y + dy) as f32, 0.0);
-        let p = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-        add_quad(&mut mesh, p, None, p.map(|p| p.truncate() * 0.35));
+    for (i, j) in (1..xs.len()).flat_map(|i| (1..ys.len()).map(move |j| (i, j))) {
+        if is_hole([i, j]) {
+            continue;
+        }
+        let places = [(i - 1, j - 1), (i, j - 1), (i, j), (i - 1, j)];
+        let at = places.map(|(i, j)| Vec3::new(xs[i], ys[j], 0.0));
+        let uv = at.map(|p| p.truncate() * 0.35);
+        add_quad(&mut mesh, at.map(|p| turn * p), None, uv);
     }
     mesh
 }
 
-/// All but the sheet are closed.
+/// Sheets, and how many of them are walked as one.
+fn sheets() -> [(&'static str, TriangleMesh, usize); 3] {
+    let three = [-1.0, -0.2, 0.3, 1.0].as_slice();
+    let turn = Quat::from_euler(EulerRot::XYZ, 0.4, -0.9, 2.0);
+    let four = sheet([&[-1.0, 0.0, 1.0]; 2], Quat::IDENTITY, |_| false);
+    [
+        ("sheet", four, 1),
+        ("turned sheet", sheet([three; 2], turn, |_| false), 1),
+        (
+            "pierced sheet",
+            sheet([three; 2], turn, |quad| quad == [2, 2]),
+            0,
+        ),
+    ]
+}
+
+fn is_sheet(name: &str) -> bool {
+    name.ends_with("sheet")
+}
+
+/// All but the sheets are closed.
 fn meshes() -> Vec<(&'static str, TriangleMesh)> {
     let round = |u: f32, v: f32| Vec2::new(u * 2.0, v);
     let jumping = |u: f32, v: f32| Vec2::new(0.1 + u * 1.83, v * 0.77);
     let mirrored = |u: f32, v: f32| Vec2::new((u - 0.5).abs() * 2.0, v);
-    vec![
+    let mut meshes = vec![
         ("torus", torus(12, 8, round)),
         ("finer torus", torus(24, 12, round)),
         ("seamed torus", torus(12, 8, jumping)),
         ("mirrored torus", torus(12, 8, mirrored)),
         ("cube", cube()),
         ("slab", slab()),
-        ("sheet", sheet()),
-    ]
+    ];
+    meshes.extend(sheets().map(|(name, mesh, _)| (name, mesh)));
+    meshes
 }
 
 /// Everything that is displaced by itself, in double precision.
@@ -336,7 +361,7 @@ fn displaced_surfaces_are_those_of_explicit_tessellation() {
         }
         let [flat, fine] = displacement.kinds();
         assert!(
-            (flat == 0) == (name != "sheet") && flat + fine == mesh.len(),
+            (flat > 0) == is_sheet(name) && flat + fine == mesh.len(),
             "{name}"
         );
         let is_flat = flat > 0;
@@ -391,6 +416,35 @@ fn displaced_surfaces_are_those_of_explicit_tessellation() {
     });
 }
 
+#[test]
+fn flat_triangles_of_one_plane_and_chart_are_walked_as_one() {
+    with_relief(|reliefs, _| {
+        let count = |mesh: &TriangleMesh| Displacement::new(mesh, &reliefs).sheets();
+        for (name, mut mesh, one) in sheets() {
+            assert_eq!(count(&mesh), one, "{name}");
+            // One corner off the plane, or its texture coordinate elsewhere: no longer.
+            let corner = mesh.positions[2];
+            let here = |mesh: &TriangleMesh| {
+                let positions = mesh.positions.iter().enumerate();
+                positions
+                    .filter(|(_, p)| **p == corner)
+                    .map(|(i, _)| i)
+                    .collect::<Vec<_>>()
+            };
+            let known = mesh.uvs.clone();
+            for i in here(&mesh) {
+                mesh.uvs[i] += 1e-3;
+            }
+            assert_eq!(count(&mesh), 0, "{name}, shifted");
+            mesh.uvs = known;
+            for i in here(&mesh) {
+                mesh.positions[i] += Vec3::new(0.3e-5, 0.0, 1e-5);
+            }
+            assert_eq!(count(&mesh), 0, "{name}, bent");
+        }
+    });
+}
+
 fn trace(mesh: DisplacedMesh<'_, '_>, rays: &[Ray], level: SimdLevel) -> Vec<Option<SurfaceHit>> {
     let mut tracer = Tracer::default();
     for ray in rays {
@@ -403,7 +457,7 @@ fn trace(mesh: DisplacedMesh<'_, '_>, rays: &[Ray], level: SimdLevel) -> Vec<Opt
 #[test]
 fn closed_displaced_surfaces_let_no_ray_out() {
     for_each_displaced(|name, displaced, map| {
-        if name == "sheet" {
+        if is_sheet(name) {
             return;
         }
         let mesh = displaced.mesh;
@@ -494,7 +548,7 @@ fn micro_triangles_are_kept_only_where_memory_allows() {
             assert!(make(2 * bytes, true).is_none(), "{name}: stopped");
         }
         let made = make(2 * bytes, false);
-        assert_eq!(made.is_some(), name != "sheet", "{name}: flat or not");
+        assert_eq!(made.is_some(), !is_sheet(name), "{name}: flat or not");
         if let Some(made) = made {
             assert!(displacement.micro(made.bytes()).is_some(), "{name}");
             assert!(displacement.micro(made.bytes() - 1).is_none(), "{name}");
