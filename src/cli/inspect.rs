@@ -10,7 +10,7 @@ use super::options::InspectOptions;
 use super::output;
 use crate::scene::{LoadedScene, Scene};
 use crate::shading::Material;
-use crate::texture::{Levels, MapImage, MapRole, MapSlot, NormalSpace};
+use crate::texture::{Levels, MapImage, MapRole, MapSlot, NormalAxes, NormalSpace};
 
 /// Runs the command.
 pub(super) fn run(options: &InspectOptions) -> Result<(), CliError> {
@@ -69,6 +69,7 @@ fn map_json(scene: &Scene, slot: &MapSlot) -> Value {
         "invert": slot.invert,
         "flip_green": slot.flip_green,
         "space": slot.space,
+        "axes": slot.axes.to_string(),
         "destair": slot.destair,
         "levels": levels(scene, slot).map(|levels| levels.count),
         "flip_v": slot.flip_v,
@@ -192,6 +193,9 @@ fn write_material(text: &mut String, scene: &Scene, material: &Material) -> std:
         }
         if slot.space != NormalSpace::Tangent {
             write!(text, ", {} space", slot.space.name())?;
+        }
+        if slot.space == NormalSpace::Object && slot.axes != NormalAxes::FILE {
+            write!(text, ", channels tell {}", slot.axes)?;
         }
         if let Some(baked) = slot.baked_amplitude {
             write!(text, ", baked for amplitude {}", short(baked))?;

@@ -290,6 +290,7 @@ fn bind_normal<'a>(
         strength,
         signs,
         space,
+        axes: slot.axes,
         moments: None,
         mips: (filter == TextureFilter::Mip).then(|| Mips {
             halved: image.normal_halvings(slot.role),

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Wrap;
+use super::{NormalAxes, Wrap};
 
 /// What a picture means to a material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -123,6 +123,8 @@ pub struct MapSlot {
     pub flip_green: bool,
     /// Normals: the directions that they are told in.
     pub space: NormalSpace,
+    /// Normals in object space: the axes that the channels tell.
+    pub axes: NormalAxes,
     /// Heights: smoothed within half a stored level, see [`destaired`](super::destaired).
     pub destair: bool,
     /// The picture's first row lies at v = 0 instead of v = 1.
@@ -159,6 +161,7 @@ impl MapSlot {
             invert: false,
             flip_green: false,
             space: NormalSpace::Tangent,
+            axes: NormalAxes::FILE,
             destair: false,
             flip_v: false,
             wrap: Wrap::Repeat,

@@ -17,7 +17,7 @@ use reliefscope::scene::{
 };
 use reliefscope::shading::{Falloff, Light, LightKind, Material};
 use reliefscope::surface::mapping::{Derivative, Lookup, Method, SearchSettings};
-use reliefscope::texture::{Channel, MapRole, MapSlot, NormalSpace, Wrap};
+use reliefscope::texture::{Channel, FileAxis, MapRole, MapSlot, NormalAxes, NormalSpace, Wrap};
 use tempfile::TempDir;
 
 use super::support::{bits, picture};
@@ -497,6 +497,7 @@ fn full_text(folder: &Folder) -> String {
         invert: true,
         flip_green: true,
         space: NormalSpace::Object,
+        axes: NormalAxes::FILE.with(1, FileAxis::ALL[5]),
         destair: true,
         flip_v: true,
         wrap: Wrap::Mirror,

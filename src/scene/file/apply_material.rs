@@ -189,6 +189,7 @@ fn apply_slot_keys(keys: &MaterialKeys, material: &mut Material, doubts: &mut Ve
     short.put(amplitude, slopes, |slot| &mut slot.baked_amplitude);
     let normals = ([MapRole::Normal].as_slice(), "normal");
     short.put(keys.normal_space.as_ref(), normals, |slot| &mut slot.space);
+    short.put(keys.normal_axes.as_ref(), normals, |slot| &mut slot.axes);
     let heights = ([MapRole::Height].as_slice(), "height");
     short.put(keys.destair.as_ref(), heights, |slot| &mut slot.destair);
 }
@@ -236,6 +237,7 @@ fn slot(keys: &MapKeys, pictures: &mut Pictures) -> Read<MapSlot> {
     put(&mut slot.invert, keys.invert);
     put(&mut slot.flip_green, keys.flip_green);
     put(&mut slot.space, keys.space);
+    put(&mut slot.axes, keys.axes);
     put(&mut slot.destair, keys.destair);
     put(&mut slot.flip_v, keys.flip_v);
     put(&mut slot.wrap, keys.wrap);

@@ -7,7 +7,7 @@ use crate::math::LinearRgb;
 use crate::scene::{Background, BentNormals, ShadingModel, TextureFilter, View};
 use crate::shading::Light;
 use crate::surface::mapping::{Derivative, Lookup, Method};
-use crate::texture::{Channel, MapRole, NormalSpace, Wrap};
+use crate::texture::{Channel, MapRole, NormalAxes, NormalSpace, Wrap};
 
 /// A value and the byte offset of its key, for faults that show only once the model is known.
 #[derive(Debug, Clone, PartialEq)]
@@ -179,6 +179,8 @@ pub(super) struct MaterialKeys {
     pub normal_down: Option<Placed<bool>>,
     /// `normal_space`.
     pub normal_space: Option<Placed<NormalSpace>>,
+    /// `normal_axes`.
+    pub normal_axes: Option<Placed<NormalAxes>>,
     /// `destair`.
     pub destair: Option<Placed<bool>>,
     /// `normal_amplitude`, world units.
@@ -202,6 +204,8 @@ pub(super) struct MapKeys {
     pub flip_green: Option<bool>,
     /// `space`.
     pub space: Option<NormalSpace>,
+    /// `axes`.
+    pub axes: Option<NormalAxes>,
     /// `destair`.
     pub destair: Option<bool>,
     /// `flip_v`.

@@ -4,7 +4,7 @@ use super::document::{MapKeys, MaterialKeys, Placed, Which};
 use super::fault::Read;
 use super::parse::{amplitude, or_default, placed};
 use super::section::{Item, Limits, Section};
-use crate::texture::{Channel, MapRole, NormalSpace, Wrap};
+use crate::texture::{Channel, MapRole, NormalAxes, NormalSpace, Wrap};
 
 /// The key that gives a material its one map in a role.
 pub(super) const fn simple_key(role: MapRole) -> &'static str {
@@ -48,6 +48,7 @@ fn material(mut table: Section<'_>) -> Read<MaterialKeys> {
         normal_space: table.read("normal_space", |x| {
             Ok(placed(x, x.choice(&NormalSpace::ALL, NormalSpace::name)?))
         })?,
+        normal_axes: table.read("normal_axes", |x| Ok(placed(x, axes(x)?)))?,
         destair: table.read("destair", |x| Ok(placed(x, x.boolean()?)))?,
         normal_amplitude: table.read("normal_amplitude", |x| Ok(placed(x, baked_amplitude(x)?)))?,
     };
@@ -83,6 +84,15 @@ fn normal_down(item: &Item<'_>) -> Read<Placed<bool>> {
     Ok(placed(item, word == "down"))
 }
 
+fn axes(item: &Item<'_>) -> Read<NormalAxes> {
+    let text = item.text()?;
+    NormalAxes::parse(&text).ok_or_else(|| {
+        item.fault(format!(
+            "must tell what red, green and blue are, each of x, y and z once, such as \"+x -z +y\", not \"{text}\""
+        ))
+    })
+}
+
 /// World units above zero, or "default". A map baked for no relief cannot be scaled to one.
 fn baked_amplitude(item: &Item<'_>) -> Read<Option<f64>> {
     or_default(item, |x| x.number(Limits::Above(0.0)))
@@ -102,6 +112,7 @@ fn map(mut table: Section<'_>) -> Read<MapKeys> {
         invert: table.read("invert", Item::boolean)?,
         flip_green: table.read("flip_green", Item::boolean)?,
         space: table.read("space", |x| x.choice(&NormalSpace::ALL, NormalSpace::name))?,
+        axes: table.read("axes", axes)?,
         destair: table.read("destair", Item::boolean)?,
         flip_v: table.read("flip_v", Item::boolean)?,
         wrap: table.read("wrap", |x| x.choice(&Wrap::ALL, Wrap::name))?,

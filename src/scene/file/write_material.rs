@@ -69,6 +69,9 @@ fn map(
     if slot.space != plain.space {
         text.string("space", slot.space.name());
     }
+    if slot.axes != plain.axes {
+        text.string("axes", &slot.axes.to_string());
+    }
     if slot.destair != plain.destair {
         text.raw("destair", slot.destair);
     }

@@ -4,7 +4,7 @@ use glam::Vec2;
 
 use crate::math::{Real, V2, V3};
 use crate::texture::{
-    Addressing, HeightMap, Look, Mips, NormalMap, NormalSpace, SlopeMoments, Wrap,
+    Addressing, HeightMap, Look, Mips, NormalAxes, NormalMap, NormalSpace, SlopeMoments, Wrap,
 };
 
 /// A height map with its amplitude: `displacement = stored · scale + offset`, internal units along the
@@ -237,6 +237,8 @@ pub struct BoundNormal<'a> {
     pub signs: Vec2,
     /// The directions that the map is told in.
     pub space: NormalSpace,
+    /// In object space, the axes that the channels tell.
+    pub axes: NormalAxes,
     /// For means over what the ray's cone covers; `None` reads the map at points.
     pub mips: Option<Mips<'a, NormalMap>>,
     /// Of slope maps, how much slopes differ there; of normal maps the means themselves tell.
@@ -253,6 +255,7 @@ impl<'a> BoundNormal<'a> {
             strength: 1.0,
             signs: Vec2::ONE,
             space: NormalSpace::Tangent,
+            axes: NormalAxes::FILE,
             mips: None,
             moments: None,
         }
@@ -266,12 +269,15 @@ impl BoundNormal<'_> {
     #[must_use]
     pub fn stored<F: Real>(&self, uv: V2<F>, footprint: F) -> V3<F> {
         let st = self.addressing.st(uv);
-        let V3 { x, y, z } = self.signed(st, footprint);
+        let stored = self.signed(st, footprint);
         // Turned-over and mirrored copies of a picture say the same in the axes of the file.
-        if self.addressing.wrap == Wrap::Mirror && self.space != NormalSpace::Object {
+        if self.space == NormalSpace::Object {
+            self.axes.in_file(stored)
+        } else if self.addressing.wrap == Wrap::Mirror {
+            let V3 { x, y, z } = stored;
             V3::new(unmirrored(x, st.x), unmirrored(y, st.y), z)
         } else {
-            V3::new(x, y, z)
+            stored
         }
     }
 

@@ -7,7 +7,7 @@ use egui::{CollapsingHeader, RichText, Ui};
 use super::{Action, PanelContext};
 use crate::scene::Scene;
 use crate::shading::Material;
-use crate::texture::{Channel, MapRole, MapSlot, NormalSpace, Wrap};
+use crate::texture::{Channel, FileAxis, MapRole, MapSlot, NormalSpace, Wrap};
 use crate::viewer::dialogs::Purpose;
 use crate::viewer::theme;
 use crate::viewer::widgets::{
@@ -148,6 +148,9 @@ impl SlotEditor<'_> {
             let all = NormalSpace::ALL;
             let caption = Caption::named("Space", &label);
             choice_ui(ui, caption, &mut self.slot.space, &all, NormalSpace::name);
+            if self.slot.space == NormalSpace::Object {
+                self.axes_ui(ui);
+            }
         }
         if self.slot.role == MapRole::Height {
             self.stairs_ui(ui, scene);
@@ -176,6 +179,23 @@ impl SlotEditor<'_> {
             response.on_hover_text(path.display().to_string());
         }
         action
+    }
+
+    /// Which axes of the file an object-space map tells.
+    fn axes_ui(&mut self, ui: &mut Ui) {
+        for (channel, caption) in ["Red tells", "Green tells", "Blue tells"]
+            .into_iter()
+            .enumerate()
+        {
+            let before = self.slot.axes.channels()[channel];
+            let mut axis = before;
+            let label = self.label(caption);
+            let caption = Caption::named(caption, &label);
+            choice_ui(ui, caption, &mut axis, &FileAxis::ALL, FileAxis::name);
+            if axis != before {
+                self.slot.axes = self.slot.axes.with(channel, axis);
+            }
+        }
     }
 
     /// The switches that matter in this role.

@@ -8,7 +8,7 @@ use reliefscope::render::Snapshot;
 use reliefscope::scene::load::LoadOptions;
 use reliefscope::scene::open;
 use reliefscope::surface::mapping::{Lookup, Method};
-use reliefscope::texture::{MapRole, NormalSpace, Wrap};
+use reliefscope::texture::{MapRole, NormalAxes, NormalSpace, Wrap};
 use tempfile::TempDir;
 
 use super::{normal_at, same_bits_everywhere};
@@ -63,6 +63,24 @@ fn green_may_grow_downwards() {
     let mut scene = quad_with(N);
     scene.settings.materials[0].maps[0].flip_green = true;
     shows(&scene.snapshot(), Vec3::new(N.x, -N.y, N.z));
+}
+
+#[test]
+fn channels_tell_the_axes_that_they_are_said_to() {
+    let axes = NormalAxes::parse("-z +x -y").expect("each once");
+    let mut scene = quad_with(N);
+    scene.settings.materials[0].maps[0].axes = axes;
+    let turned = scene.snapshot();
+    shows(&turned, Vec3::new(N.y, -N.z, -N.x));
+    // Of tangent space they say nothing.
+    let tangent = |axes| {
+        let with = edited(&turned, |s| {
+            s.materials[0].maps[0].space = NormalSpace::Tangent;
+            s.materials[0].maps[0].axes = axes;
+        });
+        bits(&picture(&with))
+    };
+    assert_eq!(tangent(axes), tangent(NormalAxes::FILE));
 }
 
 #[test]
