@@ -15,7 +15,7 @@ pub enum ErrorMetric {
     /// Angle between the normals that light is computed with, degrees.
     NormalAngle,
     /// Distance between the texture coordinates shown, texels of the material's map (see
-    /// [`Records::texels_per_uv`]).
+    /// [`UvYardstick`](crate::render::UvYardstick)).
     Uv,
     /// Difference of the displacement along the smooth normal, over the amplitude.
     Depth,
@@ -176,8 +176,8 @@ fn record_difference(
         }
         ErrorMetric::Depth => (a.depth - b.depth).abs(),
         _ if material != other => f32::INFINITY,
-        _ => match (a.uv, b.uv, records.texels_per_uv.get(usize::from(material))) {
-            (Some(a), Some(b), Some(&texels)) => ((a - b) * texels).length(),
+        _ => match (a.uv, b.uv, records.yardsticks.get(usize::from(material))) {
+            (Some(a), Some(b), Some(yardstick)) => yardstick.texels(a, b),
             _ => f32::NAN,
         },
     }
@@ -202,6 +202,7 @@ mod tests {
     use glam::{Vec2, Vec3};
 
     use super::*;
+    use crate::render::UvYardstick;
 
     #[test]
     fn mean_and_percentile() {
@@ -233,7 +234,10 @@ mod tests {
         let records = |first, last| Records {
             size: [3, 1],
             pixels: vec![first, nothing, last],
-            texels_per_uv: vec![Vec2::new(64.0, 32.0)],
+            yardsticks: vec![UvYardstick {
+                texels_per_uv: Vec2::new(64.0, 32.0),
+                turns_per_uv: Vec2::ZERO,
+            }],
         };
         let (a, b) = (
             records(leaning(0.0, 0.5, 0.25), nothing),
@@ -263,6 +267,19 @@ mod tests {
             let map = error_map(metric, [shown(&a), unknown], 3, 1);
             assert!(map.iter().all(|e| e.is_nan()), "{metric:?}: {map:?}");
         }
+    }
+
+    #[test]
+    fn a_turn_of_a_repeating_map_is_no_distance() {
+        let repeating = UvYardstick {
+            texels_per_uv: Vec2::new(64.0, 32.0),
+            turns_per_uv: Vec2::new(2.0, 0.0),
+        };
+        let apart = |a: [f32; 2], b: [f32; 2]| repeating.texels(a.into(), b.into());
+        // Half a unit of u is one picture.
+        assert_eq!(apart([1.25, 0.0], [0.25, 0.0]), 0.0);
+        assert!((apart([0.49, 0.0], [0.01, 0.0]) - 0.02 * 64.0).abs() < 1e-4);
+        assert_eq!(apart([0.0, 1.0], [0.0, 0.0]), 32.0);
     }
 
     #[test]

@@ -32,7 +32,7 @@ pub use profile::{LightProfile, MethodProfile, NoProfile, ReliefProfile, profile
 pub use progressive::{PassEnd, Progressive, Shown, Snapshot};
 pub use ray_jobs::rays_of;
 pub use ray_list::{RayKind, RayList, RayQuery};
-pub use records::{PixelRecord, Recording, Records};
+pub use records::{PixelRecord, Recording, Records, UvYardstick};
 pub use sampling::pixel_sample;
 pub use stages::{Stage, StageWatch};
 pub use stop::Stop;

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::film::{Film, Picture, lock};
-use super::recorder::{Recorder, Yardsticks, texels_per_uv};
+use super::recorder::{Recorder, Yardsticks, uv_yardsticks};
 use super::stages::{Scratch, StageWatch};
 use super::{Counters, Frame, Recording, Records, Stop};
 use crate::math::{LinearRgb, SrgbEncoder};
@@ -281,7 +281,7 @@ impl Progressive {
         (!pixels.is_empty()).then(|| Records {
             size: film.size,
             pixels,
-            texels_per_uv: self.snapshot.as_ref().map_or_else(Vec::new, texels_per_uv),
+            yardsticks: self.snapshot.as_ref().map_or_else(Vec::new, uv_yardsticks),
         })
     }
 

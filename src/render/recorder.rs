@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3};
 use super::Frame;
 use super::Snapshot;
 use super::material::{amplitude, bind_height};
-use super::records::{PixelRecord, Recording};
+use super::records::{PixelRecord, Recording, UvYardstick};
 use super::stages::surface::fetches_per_point;
 use super::stages::{
     Column3, PLACES, Places, Rays, Run, Shadows, Stage, StageWatch, Surfaces, Walks, vec_at,
@@ -16,7 +16,7 @@ use crate::scene::TextureFilter;
 use crate::surface::displaced::Tracer;
 use crate::surface::mapping::BoundHeight;
 use crate::surface::{SurfaceInteraction, SurfaceParts, surface_at};
-use crate::texture::MapRole;
+use crate::texture::{MapRole, Wrap};
 
 /// What the maps of a material measure by.
 #[derive(Debug, Clone, Copy)]
@@ -64,10 +64,9 @@ impl<'a> Yardsticks<'a> {
     }
 }
 
-/// Texels per unit of u and v of the map that places on a material are told apart by, see
-/// [`Records::texels_per_uv`](super::Records::texels_per_uv).
+/// How places on each material are told apart.
 #[must_use]
-pub fn texels_per_uv(snapshot: &Snapshot) -> Vec<Vec2> {
+pub fn uv_yardsticks(snapshot: &Snapshot) -> Vec<UvYardstick> {
     const ROLES: [MapRole; 4] = [
         MapRole::Height,
         MapRole::Normal,
@@ -75,13 +74,22 @@ pub fn texels_per_uv(snapshot: &Snapshot) -> Vec<Vec2> {
         MapRole::Albedo,
     ];
     let materials = snapshot.settings.materials.iter();
-    let rates = materials.map(|material| {
+    let known = materials.map(|material| {
         let slot = ROLES.into_iter().find_map(|role| material.map(role))?;
         let image = snapshot.scene.images.get(slot.image)?;
         let [width, height] = [image.raw.width, image.raw.height];
-        Some(Vec2::from(slot.uv_scale) * Vec2::new(width as f32, height as f32))
+        let pictures_per_uv = Vec2::from(slot.uv_scale);
+        Some(UvYardstick {
+            texels_per_uv: pictures_per_uv * Vec2::new(width as f32, height as f32),
+            turns_per_uv: match slot.wrap {
+                Wrap::Repeat => pictures_per_uv,
+                Wrap::Clamp | Wrap::Mirror => Vec2::ZERO,
+            },
+        })
     });
-    rates.map(|rate| rate.unwrap_or(Vec2::ONE)).collect()
+    known
+        .map(|yardstick| yardstick.unwrap_or(UvYardstick::NONE))
+        .collect()
 }
 
 /// Notes what one tile's first sample finds.

@@ -97,6 +97,36 @@ impl PixelRecord {
     };
 }
 
+/// How far places on a material are apart, by its height map, else by its normal, slope or colour map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UvYardstick {
+    /// Texels per unit of u and v; 1 without any map.
+    pub texels_per_uv: Vec2,
+    /// Pictures per unit of u and v, where the picture repeats; 0 elsewhere.
+    pub turns_per_uv: Vec2,
+}
+
+impl UvYardstick {
+    /// Of a material without maps.
+    pub const NONE: Self = Self {
+        texels_per_uv: Vec2::ONE,
+        turns_per_uv: Vec2::ZERO,
+    };
+
+    /// Texels between two places. Where the picture repeats, a whole turn is no distance: charts begin anew there.
+    #[must_use]
+    pub fn texels(&self, a: Vec2, b: Vec2) -> f32 {
+        let way = a - b;
+        let turns = (way * self.turns_per_uv).round();
+        let whole = Vec2::select(
+            turns.cmpeq(Vec2::ZERO),
+            Vec2::ZERO,
+            turns / self.turns_per_uv,
+        );
+        ((way - whole) * self.texels_per_uv).length()
+    }
+}
+
 /// Records of all pixels of a picture, or of a preview of it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Records {
@@ -104,7 +134,6 @@ pub struct Records {
     pub size: [u32; 2],
     /// In rows.
     pub pixels: Vec<PixelRecord>,
-    /// For each material, texels of its map per unit of u and v: of the height map, else of the normal, slope or
-    /// colour map; 1 without any.
-    pub texels_per_uv: Vec<Vec2>,
+    /// For each material, how far places on it are apart.
+    pub yardsticks: Vec<UvYardstick>,
 }

@@ -140,6 +140,7 @@ fn round_up(most: f32) -> f32 {
 mod tests {
     use glam::Vec2;
 
+    use super::super::UvYardstick;
     use super::*;
 
     fn seen(steps: u32, depth: f32) -> PixelRecord {
@@ -157,7 +158,7 @@ mod tests {
         Records {
             size: [pixels.len() as u32, 1],
             pixels,
-            texels_per_uv: vec![Vec2::ONE],
+            yardsticks: vec![UvYardstick::NONE],
         }
     }
 

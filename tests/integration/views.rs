@@ -165,7 +165,11 @@ fn places_on_a_plain_relief_are_known() {
     }
     let bumped = at(&records(&by(&snapshot, Method::Bump)), [20, 30]);
     assert_eq!((bumped.depth, bumped.steps), (0.0, 0));
-    assert_eq!(records(&snapshot).texels_per_uv, [Vec2::new(8.0, 8.0)]);
+    let [yardstick] = records(&snapshot).yardsticks[..] else {
+        panic!("one material");
+    };
+    assert_eq!(yardstick.texels_per_uv, Vec2::new(8.0, 8.0));
+    assert_eq!(yardstick.turns_per_uv, Vec2::ONE);
 }
 
 /// Mean and 95th percentile of a metric between two methods.
