@@ -1,4 +1,5 @@
-//! Milliseconds of what the window does while a person works: start, first pass, re-shading, encoding.
+//! Milliseconds of what the window does while a person works: start, first pass, re-shading,
+//! moving a light, encoding.
 //!
 //! `cargo bench --bench frame` prints medians and the span between the fastest and the slowest of 15 rounds, or of 3
 //! or more where they take long, at 1280×720 on two threads. Without `--bench` (as `cargo test` runs it) it only checks, at a small size.
@@ -55,6 +56,7 @@ fn line(times: &FrameTimes) -> String {
         ("full", times.full),
         ("encode", times.encode),
         ("re-shade", times.reshade),
+        ("re-light", times.relight),
     ];
     let column =
         |(name, Spread { median, min, max })| format!("{name} {median:.1} ms ({min:.1}–{max:.1})");

@@ -1,6 +1,6 @@
 //! Arrays that vectors are read from and written to, and sets of their places.
 
-use std::ops::{BitAnd, Not};
+use std::ops::{BitAnd, BitOr, Not};
 
 use super::simd::{Simd, SimdBase, SimdMask};
 use super::wide::{Wide, WideBits, WideMask};
@@ -148,6 +148,14 @@ impl<const W: usize> BitAnd for PlaceSet<W> {
     type Output = Self;
     fn bitand(mut self, o: Self) -> Self {
         self.0.iter_mut().zip(o.0).for_each(|(a, b)| *a &= b);
+        self
+    }
+}
+
+impl<const W: usize> BitOr for PlaceSet<W> {
+    type Output = Self;
+    fn bitor(mut self, o: Self) -> Self {
+        self.0.iter_mut().zip(o.0).for_each(|(a, b)| *a |= b);
         self
     }
 }

@@ -33,7 +33,7 @@ pub struct FrameCamera {
 }
 
 /// Where a light's rays come from, in internal units.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FrameLightKind {
     /// Unit direction to the light.
     Directional(Vec3),

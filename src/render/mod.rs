@@ -5,6 +5,7 @@ mod crash;
 mod displaced_rays;
 mod film;
 mod frame;
+mod known_shadows;
 mod material;
 mod probe;
 mod profile;

@@ -1,6 +1,7 @@
 //! One tile: its share of the film, its cached hits, and its passes.
 
 use super::film::Film;
+use super::known_shadows::KnownShadows;
 use super::sites::Sites;
 use super::stages::camera::Pixels;
 use super::stages::{
@@ -31,6 +32,8 @@ pub struct Tile {
     /// What the first samples found, by place; empty unless they were asked for.
     pub records: Vec<PixelRecord>,
     knows_hits: bool,
+    /// Shadows of the first samples.
+    shadows: KnownShadows,
 }
 
 impl Tile {
@@ -51,6 +54,7 @@ impl Tile {
             hits: Box::new(HitLanes::none()),
             records: Vec::new(),
             knows_hits: false,
+            shadows: KnownShadows::default(),
         }
     }
 
@@ -81,6 +85,9 @@ impl Tile {
         let hits = if index == 0 { &mut self.hits } else { hits };
         let is_unknown = index > 0 || !self.knows_hits;
         let traces = is_unknown || (watch.wants_every_ray() && frame.displaced.is_some());
+        if is_unknown {
+            self.shadows.forget();
+        }
         if traces {
             known.clear();
             // Hits on displaced surfaces are more than a cached hit can tell.
@@ -103,7 +110,18 @@ impl Tile {
         }
         watch.traced(&self.pixels.active, &work.tracer);
         watch.done(Stage::Trace);
+        // Where surfaces are displaced, points and what is in their way change together; who counts rays wants all.
+        let keeps_shadows = index == 0
+            && frame.displaced.is_none()
+            && frame.charts.is_none()
+            && !watch.wants_every_ray();
+        if keeps_shadows {
+            work.shadows.known = Some(std::mem::take(&mut self.shadows));
+        }
         work.shade_hits(frame, hits, stages::mirrors_at(frame, 0), counters, watch);
+        if let Some(shadows) = work.shadows.known.take() {
+            self.shadows = shadows;
+        }
         scratch.follow_mirrors(frame, counters, watch);
         if frame.is_left_off() {
             self.counters = before;

@@ -395,7 +395,7 @@ fn the_table_has_its_shape() {
     assert_eq!(frames.len(), 2 * Method::ALL.len());
     for (row, method) in frames.iter().zip(Method::ALL.iter().cycle()) {
         assert_eq!(row["method"], method.name());
-        for name in ["start", "preview", "full", "reshade", "encode"] {
+        for name in ["start", "preview", "full", "reshade", "relight", "encode"] {
             is_time(row, name);
         }
         assert_eq!(row["counters"]["camera_rays"], 24 * 16);

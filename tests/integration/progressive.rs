@@ -309,6 +309,91 @@ fn counts_are_exact() {
     assert!(counters.power_calls > 0 && counters.power_calls <= 2 * points);
 }
 
+/// Passes of one snapshot after the other, by one renderer: the last picture must be as if it had come first.
+#[track_caller]
+fn shadow_rays_after(changes: &[&Snapshot]) -> u64 {
+    let mut renderer = Progressive::new(2).expect("threads");
+    let Some((&last, before)) = changes.split_last() else {
+        return 0;
+    };
+    for &snapshot in before {
+        renderer.start(snapshot.clone());
+        renderer.pass(&|| false);
+    }
+    renderer.start(last.clone());
+    renderer.pass(&|| false);
+    let traced = renderer.counters().shadow_rays;
+    while !renderer.is_converged() {
+        renderer.pass(&|| false);
+    }
+    let same = bits(&renderer.picture()) == bits(&picture(last));
+    assert!(same, "what came before changed the picture");
+    traced
+}
+
+#[test]
+fn shadows_are_traced_again_only_for_what_changes_them() {
+    let snapshot = edited(&mirrored(&waves()), |s| {
+        s.samples = 2;
+        s.shading.max_bounces = 0;
+        s.mapping.method = Method::Bump;
+        s.lights.retain(|light| light.kind != LightKind::Ambient);
+    });
+    let whole = shadow_rays_after(&[&snapshot]);
+    assert!(whole > 500, "{whole}");
+    assert_eq!(snapshot.settings.lights.len(), 2);
+
+    let colours = edited(&snapshot, |s| {
+        s.lights[0].intensity *= 0.5;
+        s.lights[1].color = LinearRgb::new(1.0, 0.5, 0.2);
+        s.materials[0].kd = LinearRgb::gray(0.3);
+        s.materials[0].shininess = 90.0;
+    });
+    assert_eq!(shadow_rays_after(&[&snapshot, &colours]), 0);
+    let swapped = edited(&snapshot, |s| s.lights.swap(0, 1));
+    assert_eq!(shadow_rays_after(&[&snapshot, &swapped]), 0);
+
+    // Other normals turn other points to the light; only those are new.
+    let none = edited(&snapshot, |s| s.mapping.method = Method::None);
+    let new = shadow_rays_after(&[&snapshot, &none]);
+    assert!(new < whole / 4, "{new} of {whole}");
+    assert_eq!(shadow_rays_after(&[&snapshot, &none, &snapshot]), 0);
+
+    let moved = edited(&snapshot, |s| match &mut s.lights[0].kind {
+        LightKind::Point { position, .. } => position.x += 0.3,
+        LightKind::Directional { direction } => direction.x += 0.3,
+        LightKind::Ambient => {}
+    });
+    let new = shadow_rays_after(&[&snapshot, &moved]);
+    assert!(new > whole / 4 && new < whole * 3 / 4, "{new} of {whole}");
+    let unlit = edited(&snapshot, |s| {
+        s.lights.remove(0);
+    });
+    assert_eq!(shadow_rays_after(&[&snapshot, &unlit]), 0);
+    // Of a light that was gone nothing is known.
+    assert_eq!(
+        shadow_rays_after(&[&snapshot, &unlit, &snapshot]),
+        whole - shadow_rays_after(&[&unlit])
+    );
+
+    // Where points, or what starts from them, are not the same, all rays are.
+    let searched = edited(&snapshot, |s| s.mapping.method = Method::Exact);
+    shadow_rays_after(&[&snapshot, &searched]);
+    assert_eq!(shadow_rays_after(&[&snapshot, &searched, &snapshot]), whole);
+    let smooth = edited(&snapshot, |s| {
+        s.shading.smooth_terminator = !s.shading.smooth_terminator;
+    });
+    assert_eq!(shadow_rays_after(&[&smooth, &snapshot]), whole);
+    let displaced = edited(&snapshot, |s| s.mapping.method = Method::Displacement);
+    assert_eq!(
+        shadow_rays_after(&[&displaced, &snapshot]),
+        whole,
+        "after displacement"
+    );
+    let turned = edited(&snapshot, |s| s.camera.orbit(0.1, 0.0));
+    shadow_rays_after(&[&snapshot, &turned]);
+}
+
 #[test]
 fn displaced_tiles_that_are_left_off_on_the_way_leave_no_trace() {
     let snapshot = edited(&mirrored(&waves()), |s| {

@@ -20,11 +20,12 @@ pub(super) fn frame(scene: &str, method: Method, threads: usize, times: &FrameTi
     let (counters, stages, method) = (&times.counters, &times.stages, method.name());
     let millions = |n: u64| n as f64 / 1e6;
     let text = format!(
-        "{scene:14} {method:16} start {}  preview {}  full {}  re-shade {}  encode {}  trace {:.2}  perturb {:.2}  shade {:.2}  resolve {:.2} ({:.0} %)  rays {:.2}  fetches {:.2}",
+        "{scene:14} {method:16} start {}  preview {}  full {}  re-shade {}  re-light {}  encode {}  trace {:.2}  perturb {:.2}  shade {:.2}  resolve {:.2} ({:.0} %)  rays {:.2}  fetches {:.2}",
         ms(times.start),
         ms(times.preview),
         ms(times.full),
         ms(times.reshade),
+        ms(times.relight),
         ms(times.encode),
         stages.trace.median,
         stages.perturb.median,
@@ -47,6 +48,7 @@ pub(super) fn frame(scene: &str, method: Method, threads: usize, times: &FrameTi
         ("preview", times.preview),
         ("full", times.full),
         ("reshade", times.reshade),
+        ("relight", times.relight),
         ("encode", times.encode),
         ("trace", stages.trace),
         ("perturb", stages.perturb),

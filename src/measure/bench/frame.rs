@@ -3,12 +3,15 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use glam::DVec3;
+
 use super::check::same_picture;
 use super::spread::millis;
 use super::stages::StageLog;
 use super::{BenchError, Spread, StageTimes};
 use crate::render::{Counters, Picture, Progressive, Snapshot};
 use crate::scene::Scene;
+use crate::shading::LightKind;
 
 /// Preview stride that is timed.
 const STRIDE: u32 = 4;
@@ -35,8 +38,11 @@ pub struct FrameTimes {
     pub preview: Spread,
     /// One sample of each pixel, nothing known before, ms.
     pub full: Spread,
-    /// One sample of each pixel after a light has changed, from the hits that are known, ms.
+    /// One sample of each pixel after the brightness of a light has changed, from the hits and shadows that are known,
+    /// ms. A change of a material, or of a method that leaves points where they are, costs much the same.
     pub reshade: Spread,
+    /// The same after a light has moved: its shadow rays are traced anew, ms.
+    pub relight: Spread,
     /// From linear colours to those of the screen, ms.
     pub encode: Spread,
     /// Where full passes like the timed ones spend their time, with clocks in the workers.
@@ -58,6 +64,9 @@ impl FrameCase {
     /// # Errors
     /// If not, or if there are no threads.
     pub fn check(&self, twin: &Arc<Scene>) -> Result<(), BenchError> {
+        let moved = self.moved();
+        let again = first_sample(&[&self.snapshot, &moved])?;
+        same_picture("moving a light", &first_sample(&[&moved])?, &again)?;
         let lit = self.lit();
         let fresh = first_sample(&[&lit])?;
         let again = first_sample(&[&self.snapshot, &lit])?;
@@ -77,8 +86,8 @@ impl FrameCase {
     pub fn time(&self, threads: usize, rounds: usize) -> Result<FrameTimes, BenchError> {
         let mut renderer = renderer(threads)?;
         let mut rgba = vec![[0; 4]; self.snapshot.size.map(|n| n as usize).iter().product()];
-        let (turned, lit) = (self.turned(), self.lit());
-        let mut times: [Vec<f64>; 5] = Default::default();
+        let (turned, lit, moved) = (self.turned(), self.lit(), self.moved());
+        let mut times: [Vec<f64>; 6] = Default::default();
         let mut stages = StageLog::default();
         let mut counters = Counters::default();
         let began = Instant::now();
@@ -103,17 +112,22 @@ impl FrameCase {
             let reshade = millis(|| {
                 renderer.pass(&|| false);
             });
+            renderer.start(moved.clone());
+            let relight = millis(|| {
+                renderer.pass(&|| false);
+            });
             if round > 0 {
-                let round = [start, preview, full, reshade, encode];
+                let round = [start, preview, full, reshade, relight, encode];
                 times.iter_mut().zip(round).for_each(|(t, ms)| t.push(ms));
             }
         }
-        let [start, preview, full, reshade, encode] = times.map(Spread::of);
+        let [start, preview, full, reshade, relight, encode] = times.map(Spread::of);
         Ok(FrameTimes {
             start,
             preview,
             full,
             reshade,
+            relight,
             encode,
             stages: stages.times(),
             counters,
@@ -130,11 +144,31 @@ impl FrameCase {
         }
     }
 
-    /// The same with the first light changed a little.
+    /// The same with the first light a little brighter.
     fn lit(&self) -> Snapshot {
         let mut settings = (*self.snapshot.settings).clone();
         if let Some(light) = settings.lights.first_mut() {
             light.intensity *= 1.01;
+        }
+        Snapshot {
+            settings: Arc::new(settings),
+            ..self.snapshot.clone()
+        }
+    }
+
+    /// The same with the first light that throws shadows moved or turned a little.
+    fn moved(&self) -> Snapshot {
+        let mut settings = (*self.snapshot.settings).clone();
+        let places = settings.lights.iter_mut().map(|light| &mut light.kind);
+        let place = places
+            .filter_map(|kind| match kind {
+                LightKind::Point { position, .. } => Some(position),
+                LightKind::Directional { direction } => Some(direction),
+                LightKind::Ambient => None,
+            })
+            .next();
+        if let Some(place) = place {
+            *place += DVec3::X * (0.01 * place.length());
         }
         Snapshot {
             settings: Arc::new(settings),

@@ -49,6 +49,13 @@ pub fn reflected_light(
         count: rays.count,
         surfaces,
     });
+    if surfaces.runs.iter().any(|run| run.searches) {
+        // Their rays leave from elsewhere, by method and amplitude.
+        shadows.known = None;
+    }
+    if let Some(known) = &mut shadows.known {
+        known.keep_for(frame);
+    }
     for light in &frame.lights {
         aim_at_light(frame, light, mirrors, (rays, surfaces), shadows);
         shadows.occluded = Places::EMPTY;
@@ -58,7 +65,15 @@ pub fn reflected_light(
             watch.done(Stage::Perturb);
         }
         if frame.shadows && !shadows.lit.is_empty() {
-            any_hits(frame, rays.count, shadows, tracer, counters);
+            let mut trace =
+                |shadows: &mut Shadows| any_hits(frame, rays.count, shadows, tracer, counters);
+            match shadows.known.take() {
+                None => trace(shadows),
+                Some(mut known) => {
+                    known.any_hits(light, shadows, trace);
+                    shadows.known = Some(known);
+                }
+            }
             watch.shadowed(frame, (rays, surfaces), (shadows, tracer));
             watch.done(Stage::Trace);
         }

@@ -23,6 +23,7 @@ pub use watch::{Stage, StageWatch};
 
 use glam::Vec3;
 
+use super::known_shadows::KnownShadows;
 use super::{Counters, Frame};
 use crate::geometry::{CachedHit, HitLanes, RayLanes, TriangleAttributes};
 use crate::math::lanes::{Lanes, PlaceSet};
@@ -188,6 +189,8 @@ pub struct Shadows {
     pub falloff: Column,
     /// Places where something is between.
     pub occluded: Places,
+    /// What is known from before, and what is found out for later; `None` where that serves nothing.
+    pub known: Option<KnownShadows>,
 }
 
 /// Arrays that a worker uses for one tile after another, so that the steady state allocates nothing.
@@ -259,6 +262,7 @@ impl Default for Scratch {
                     lit: Places::EMPTY,
                     falloff: Column::splat(0.0),
                     occluded: Places::EMPTY,
+                    known: None,
                 },
                 tracer: Tracer::default(),
                 walks: Walks::default(),
