@@ -32,7 +32,7 @@ pub struct Tile {
     /// What the first samples found, by place; empty unless they were asked for.
     pub records: Vec<PixelRecord>,
     knows_hits: bool,
-    /// Shadows of the first samples.
+    /// Shadows at the hits of the first samples.
     shadows: KnownShadows,
 }
 
@@ -85,7 +85,7 @@ impl Tile {
         let hits = if index == 0 { &mut self.hits } else { hits };
         let is_unknown = index > 0 || !self.knows_hits;
         let traces = is_unknown || (watch.wants_every_ray() && frame.displaced.is_some());
-        if is_unknown {
+        if index == 0 && is_unknown {
             self.shadows.forget();
         }
         if traces {

@@ -318,7 +318,9 @@ fn shadow_rays_after(changes: &[&Snapshot]) -> u64 {
     };
     for &snapshot in before {
         renderer.start(snapshot.clone());
-        renderer.pass(&|| false);
+        while !renderer.is_converged() {
+            renderer.pass(&|| false);
+        }
     }
     renderer.start(last.clone());
     renderer.pass(&|| false);
