@@ -14,6 +14,9 @@ use crate::geometry::TriangleMesh;
 /// which is the last that files tell.
 const SLACK: f64 = 1e-6;
 
+/// How far vertices may lie off the plane at the most, as a share of the relief's own height.
+const FLAT: f64 = 1e-3;
+
 /// How far texture coordinates may lie off those of the plane, texels.
 const TEXEL_SLACK: f64 = 0.01;
 
@@ -97,13 +100,15 @@ impl Sheet {
             .map(|&v| position(v).abs().max_element())
             .fold(0.0, f64::max);
         let slack = SLACK * reach;
+        let [low, high] = field.range();
+        let off_plane = slack.min(FLAT * (high - low));
         let mut points = Vec::with_capacity(vertices.len());
         for &vertex in &vertices {
             let [b1, b2, z] = axes.weights(position(vertex));
             let t = texels(vertex);
             let off = [0, 1].map(|k| t0[k] + by1[k] * b1 + by2[k] * b2 - t[k]);
             // No for NaN, too.
-            if !(z.abs() <= slack && off[0].hypot(off[1]) <= TEXEL_SLACK) {
+            if !(z.abs() <= off_plane && off[0].hypot(off[1]) <= TEXEL_SLACK) {
                 return None;
             }
             points.push(DVec2::new(b1, b2));
