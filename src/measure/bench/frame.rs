@@ -10,7 +10,7 @@ use super::spread::millis;
 use super::stages::StageLog;
 use super::{BenchError, Spread, StageTimes};
 use crate::render::{Counters, Picture, Progressive, Snapshot};
-use crate::scene::Scene;
+use crate::scene::{RenderSettings, Scene};
 use crate::shading::LightKind;
 
 /// Preview stride that is timed.
@@ -136,40 +136,38 @@ impl FrameCase {
 
     /// The same with the camera turned a little.
     fn turned(&self) -> Snapshot {
-        let mut settings = (*self.snapshot.settings).clone();
-        settings.camera.orbit(TURN, 0.0);
-        Snapshot {
-            settings: Arc::new(settings),
-            ..self.snapshot.clone()
-        }
+        self.edited(|settings| settings.camera.orbit(TURN, 0.0))
     }
 
     /// The same with the first light a little brighter.
     fn lit(&self) -> Snapshot {
-        let mut settings = (*self.snapshot.settings).clone();
-        if let Some(light) = settings.lights.first_mut() {
-            light.intensity *= 1.01;
-        }
-        Snapshot {
-            settings: Arc::new(settings),
-            ..self.snapshot.clone()
-        }
+        self.edited(|settings| {
+            if let Some(light) = settings.lights.first_mut() {
+                light.intensity *= 1.01;
+            }
+        })
     }
 
     /// The same with the first light that throws shadows moved or turned a little.
     fn moved(&self) -> Snapshot {
+        self.edited(|settings| {
+            let mut places = settings
+                .lights
+                .iter_mut()
+                .filter_map(|light| match &mut light.kind {
+                    LightKind::Point { position, .. } => Some(position),
+                    LightKind::Directional { direction } => Some(direction),
+                    LightKind::Ambient => None,
+                });
+            if let Some(place) = places.next() {
+                *place += DVec3::X * (0.01 * place.length());
+            }
+        })
+    }
+
+    fn edited(&self, edit: impl FnOnce(&mut RenderSettings)) -> Snapshot {
         let mut settings = (*self.snapshot.settings).clone();
-        let places = settings.lights.iter_mut().map(|light| &mut light.kind);
-        let place = places
-            .filter_map(|kind| match kind {
-                LightKind::Point { position, .. } => Some(position),
-                LightKind::Directional { direction } => Some(direction),
-                LightKind::Ambient => None,
-            })
-            .next();
-        if let Some(place) = place {
-            *place += DVec3::X * (0.01 * place.length());
-        }
+        edit(&mut settings);
         Snapshot {
             settings: Arc::new(settings),
             ..self.snapshot.clone()

@@ -4,11 +4,11 @@ use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
 
-use super::Reliefs;
 use super::parts::Cut;
 use super::pieces::{self, Cutting, Piece};
 use super::seams::Seams;
 use super::sheets::Sheet;
+use super::{Reliefs, texels_at};
 use crate::geometry::TriangleMesh;
 use crate::math::Groups;
 
@@ -39,9 +39,9 @@ pub struct Charts {
     pub flat: usize,
 }
 
-/// Cuts up displaced triangles, or puts them together. Triangles that hang together by a corner are all flat, or all cut up, their
-/// pieces with as many segments along every edge, so that no crack opens between them. Flat parts get their mean
-/// normal.
+/// Cuts up displaced triangles, or puts them together. Triangles that hang together by a corner are all flat, or all
+/// cut up, their pieces with as many segments along every edge, so that no crack opens between them. Flat parts get
+/// their mean normal.
 pub fn charts(
     mesh: &TriangleMesh,
     reliefs: &Reliefs<'_, '_>,
@@ -146,8 +146,7 @@ fn longest_edge(mesh: &TriangleMesh, reliefs: &Reliefs<'_, '_>, prim: u32) -> f6
     let Some(field) = reliefs.on(mesh, prim) else {
         return 0.0;
     };
-    let corners = mesh.indices[prim as usize];
-    let at = corners.map(|i| field.texels_from_uv(mesh.uvs[i as usize].to_array().map(f64::from)));
+    let at = mesh.indices[prim as usize].map(|i| texels_at(mesh, field, i));
     let length = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
     let longest = length(at[0], at[1])
         .max(length(at[1], at[2]))

@@ -6,7 +6,7 @@ use super::charts::Shape;
 use super::pieces::Piece;
 use super::sheets::{Edge, Sheet, TRIANGLE};
 use super::trace::SurfaceHit;
-use super::{Displacement, Reliefs};
+use super::{Displacement, Reliefs, texels_at};
 use crate::geometry::{Ray, TriangleMesh};
 use crate::surface::mapping::relief::{ReliefField, ReliefRay, Side};
 
@@ -116,15 +116,13 @@ impl<'a, 'm> FlatPrism<'a, 'm> {
             Shape::Flat => {
                 let vertices = mesh.indices[prim as usize];
                 let normal = displacement.normals[vertices[0] as usize].as_dvec3();
-                let texels = vertices
-                    .map(|i| field.texels_from_uv(mesh.uvs[i as usize].to_array().map(f64::from)));
                 Self {
                     field,
                     prim,
                     sheet: None,
                     sides: &TRIANGLE,
                     axes: Axes::new(mesh.corners(prim).map(|p| p.as_dvec3()), normal),
-                    texels: by_weights(texels),
+                    texels: by_weights(vertices.map(|i| texels_at(mesh, field, i))),
                 }
             }
         })

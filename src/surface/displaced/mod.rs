@@ -224,6 +224,11 @@ impl Displacement {
     }
 }
 
+/// Place of a vertex on a map, texels.
+fn texels_at(mesh: &TriangleMesh, field: &ReliefField<'_>, vertex: u32) -> [f64; 2] {
+    field.texels_from_uv(mesh.uvs[vertex as usize].to_array().map(f64::from))
+}
+
 /// Box and displacements of all triangles of a sheet.
 fn sheet_prism(
     (mesh, reliefs, normals): (&TriangleMesh, &Reliefs<'_, '_>, &[Vec3]),
@@ -252,14 +257,13 @@ fn prism(
         return (Aabb::EMPTY, [0.0; 2]);
     };
     let vertices = mesh.indices[prim as usize];
-    let order = piece.order.map(|k| vertices[usize::from(k)] as usize);
+    let order = piece.order.map(|k| vertices[usize::from(k)]);
     let corners = piece.corners.map(pieces::shares);
     let at = |w: [f32; 3], [a, b, c]: [Vec3; 3]| a * w[0] + b * w[1] + c * w[2];
     let [low, high] = if matches!(piece.shape, Shape::Fine(cut) if cut.on_seam) {
         seams::range(reliefs)
     } else {
-        let texels = order.map(|i| field.texels_from_uv(mesh.uvs[i].to_array().map(f64::from)));
-        let [a, b, c] = texels;
+        let [a, b, c] = order.map(|i| texels_at(mesh, field, i));
         let places = corners.map(|w| {
             let [w0, w1, w2] = w.map(f64::from);
             [0, 1].map(|k| a[k] * w0 + b[k] * w1 + c[k] * w2)
@@ -268,8 +272,8 @@ fn prism(
     };
     let ends = [low as f32, high as f32];
     let points = corners.into_iter().flat_map(|w| {
-        let p = at(w, order.map(|i| mesh.positions[i]));
-        let n = at(w, order.map(|i| normals[i]));
+        let p = at(w, order.map(|i| mesh.positions[i as usize]));
+        let n = at(w, order.map(|i| normals[i as usize]));
         ends.map(|d| p + n * d)
     });
     let hull = Aabb::from_points(points);

@@ -7,8 +7,8 @@
 
 use std::collections::HashMap;
 
-use super::Reliefs;
 use super::charts::Shape;
+use super::{Reliefs, texels_at};
 use crate::geometry::TriangleMesh;
 
 /// Weight 1 of a corner.
@@ -225,10 +225,7 @@ impl Chart {
         let order = order(mesh, prim);
         let vertices = mesh.indices[prim as usize];
         let texels = match reliefs.on(mesh, prim) {
-            Some(field) => order.map(|k| {
-                let uv = mesh.uvs[vertices[usize::from(k)] as usize].to_array();
-                field.texels_from_uv(uv.map(f64::from))
-            }),
+            Some(field) => order.map(|k| texels_at(mesh, field, vertices[usize::from(k)])),
             None => [[0.0; 2]; 3],
         };
         let [t0, t1, t2] = texels;

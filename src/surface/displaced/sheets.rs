@@ -6,8 +6,8 @@
 
 use glam::{DVec2, DVec3};
 
-use super::Reliefs;
 use super::flat::{Axes, by_weights};
+use super::{Reliefs, texels_at};
 use crate::geometry::TriangleMesh;
 
 /// How far vertices may lie off the plane and its outline, as a share of the largest coordinate: the seventh digit,
@@ -92,8 +92,7 @@ impl Sheet {
             .collect();
         let corners = far_apart(&vertices, position, normal);
         let axes = Axes::new(corners.map(position), normal);
-        let texels =
-            |vertex: u32| field.texels_from_uv(mesh.uvs[vertex as usize].to_array().map(f64::from));
+        let texels = |vertex: u32| texels_at(mesh, field, vertex);
         let [t0, by1, by2] = by_weights(corners.map(texels));
         let reach = vertices
             .iter()
@@ -120,16 +119,15 @@ impl Sheet {
             .map(|area| if area > 0.0 { area } else { f64::NAN })
             .sum();
         let share = slack / axes.height();
-        let plan = Plan::new(prims, &points, share);
-        let (outline, whole) = outline(points, share)?;
+        let (sides, whole) = outline(&points, share)?;
         if !((area - whole).abs() <= SAME_AREA * whole) {
             return None;
         }
         Some(Self {
             axes,
             texels: [t0, by1, by2],
-            sides: outline,
-            plan,
+            sides,
+            plan: Plan::new(prims, &points, share),
         })
     }
 
@@ -216,7 +214,8 @@ fn far_apart(vertices: &[u32], position: impl Fn(u32) -> DVec3, normal: DVec3) -
 /// The convex outline of points and twice its area. Corners that lie off the line between their neighbours by less than
 /// `slack` are left out, and the sides there moved out so far that all points are within. `None` for an outline of too
 /// many sides.
-fn outline(mut points: Vec<DVec2>, slack: f64) -> Option<(Vec<Edge>, f64)> {
+fn outline(points: &[DVec2], slack: f64) -> Option<(Vec<Edge>, f64)> {
+    let mut points = points.to_vec();
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup();
     let hull = hull(&points);
@@ -391,7 +390,7 @@ mod tests {
         };
         for turn in [0.0, 0.7, 2.0] {
             let points: Vec<DVec2> = grid(turn);
-            let (sides, area) = outline(points.clone(), 1e-6).expect("few sides");
+            let (sides, area) = outline(&points, 1e-6).expect("few sides");
             assert_eq!(sides.len(), 4, "{turn}");
             assert!((area - 2.0).abs() < 1e-6, "{turn}: {area}");
             for side in sides {
@@ -405,6 +404,7 @@ mod tests {
     #[test]
     fn an_outline_of_many_sides_is_none() {
         let turn = |i: u32| DVec2::from_angle(f64::from(i) * 0.1);
-        assert!(outline((0..62).map(turn).collect(), 1e-6).is_none());
+        let points: Vec<DVec2> = (0..62).map(turn).collect();
+        assert!(outline(&points, 1e-6).is_none());
     }
 }
