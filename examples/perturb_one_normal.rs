@@ -41,6 +41,7 @@ fn main() {
         normal: Some(bound_normal(&normals, MapRole::Normal)),
         slope: Some(bound_normal(&slopes, MapRole::Slope)),
         pyramid: Some(&pyramid),
+        horizons: None,
         cones: Some(&cones),
     };
 

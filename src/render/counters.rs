@@ -25,6 +25,8 @@ pub struct Counters {
     pub relief_steps: u64,
     /// Points asked whether their own relief shadows them.
     pub relief_shadow_walks: u64,
+    /// Walks of these and over flat displaced surfaces that a horizon spared.
+    pub walks_spared: u64,
     /// Samples that were not finite and counted as black.
     pub non_finite: u64,
 }
@@ -41,6 +43,7 @@ impl Counters {
         cutout_tests: 0,
         relief_steps: 0,
         relief_shadow_walks: 0,
+        walks_spared: 0,
         non_finite: 0,
     };
 
@@ -62,6 +65,7 @@ impl AddAssign for Counters {
         self.cutout_tests += o.cutout_tests;
         self.relief_steps += o.relief_steps;
         self.relief_shadow_walks += o.relief_shadow_walks;
+        self.walks_spared += o.walks_spared;
         self.non_finite += o.non_finite;
     }
 }

@@ -124,7 +124,12 @@ impl<'a> Frame<'a> {
             charts: (settings.mapping.cut_at_border
                 && materials.iter().any(|m| m.mapping.shifts()))
             .then(|| scene.uv_charts.get(&scene.mesh)),
-            displaced: FrameDisplacement::new(scene, &materials, &settings.mapping),
+            displaced: FrameDisplacement::new(
+                scene,
+                &materials,
+                &settings.mapping,
+                settings.shading.shadows,
+            ),
             materials,
             model: settings.shading.model,
             bent_normals: settings.shading.bent_normals,
@@ -258,16 +263,22 @@ impl<'a> FrameDisplacement<'a> {
         scene: &'a Scene,
         materials: &[FrameMaterial<'a>],
         mapping: &MappingSettings,
+        shadows: bool,
     ) -> Option<Self> {
         let weld_seams = mapping.weld_seams;
         let has_holes = |m: &FrameMaterial<'_>| m.relief.is_some() && m.opacity.is_some();
         materials.iter().any(|m| m.relief.is_some()).then(|| {
-            let fields: Vec<_> = materials.iter().map(|m| m.relief).collect();
+            let mut fields: Vec<_> = materials.iter().map(|m| m.relief).collect();
             let reliefs = Reliefs {
                 fields: &fields,
                 weld_seams,
             };
             let displacement = scene.displaced.get(&scene.mesh, &reliefs);
+            for (i, (field, material)) in fields.iter_mut().zip(materials).enumerate() {
+                if shadows && displacement.walks(i) {
+                    *field = material.relief_with_horizons();
+                }
+            }
             let memory = (mapping.displacement_memory as usize) << 20;
             Self {
                 micro: displacement.micro(memory),

@@ -12,7 +12,7 @@ use crate::surface::mapping::{
 };
 use crate::surface::{BakedFrame, SurfaceInteraction, SurfaceParts};
 use crate::texture::{
-    Addressing, ColorMap, HeightMap, Look, MapRole, MapSlot, Mips, NormalSpace, Wrap,
+    Addressing, ColorMap, HeightMap, Heights, Look, MapRole, MapSlot, Mips, NormalSpace, Wrap,
 };
 
 /// An albedo map tied to its material.
@@ -106,6 +106,8 @@ pub struct FrameMaterial<'a> {
     pub mapping: MaterialMapping<'a>,
     /// The relief that is geometry of its own.
     pub relief: Option<ReliefField<'a>>,
+    /// The slot that this is made of, and whether its heights are turned over.
+    relief_slot: Option<(&'a Heights, Wrap, bool)>,
     /// How maps are read.
     pub filter: TextureFilter,
 }
@@ -132,6 +134,9 @@ impl<'a> FrameMaterial<'a> {
                 .map(role)
                 .filter(|slot| slot.image < scene.images.len())
         };
+        let heights = |s: &MapSlot| scene.images[s.image].heights_of(s);
+        let is_turned_over = |s: &MapSlot| internal_amplitude * s.gain_and_bias().0 < 0.0;
+        let horizons = |s: &MapSlot| heights(s).horizons(s.wrap, is_turned_over(s));
         // Only what the method can use is bound, so that a typed map nobody reads is never made.
         let reads = mapping.method.reads(mapping.lookup);
         let maps = MaterialMaps {
@@ -156,14 +161,16 @@ impl<'a> FrameMaterial<'a> {
             }),
             pyramid: slot(MapRole::Height)
                 .filter(|_| mapping.needs_pyramid() && internal_amplitude != 0.0)
-                .map(|s| scene.images[s.image].heights_of(s).pyramid(s.wrap)),
+                .map(|s| heights(s).pyramid(s.wrap)),
+            horizons: slot(MapRole::Height)
+                .filter(|_| mapping.shadows_itself() && shading.shadows)
+                .filter(|_| internal_amplitude != 0.0)
+                .and_then(horizons),
             cones: slot(MapRole::Height)
                 .filter(|_| mapping.needs_cones() && internal_amplitude != 0.0)
-                .map(|s| {
-                    let inverted = internal_amplitude * s.gain_and_bias().0 < 0.0;
-                    scene.images[s.image].heights_of(s).cones(s.wrap, inverted)
-                }),
+                .map(|s| heights(s).cones(s.wrap, is_turned_over(s))),
         };
+        let relief = displaced(mapping, &maps);
         Self {
             kd: material.kd,
             ks: material.ks,
@@ -174,7 +181,10 @@ impl<'a> FrameMaterial<'a> {
             albedo: slot(MapRole::Albedo).map(|s| bind_color(s, scene, filter)),
             opacity: slot(MapRole::Opacity).map(|s| bind_opacity(s, scene)),
             mapping: MaterialMapping::choose(mapping, &maps),
-            relief: displaced(mapping, &maps),
+            relief,
+            relief_slot: relief
+                .and(slot(MapRole::Height))
+                .map(|s| (heights(s), s.wrap, is_turned_over(s))),
             filter,
         }
     }
@@ -191,6 +201,14 @@ impl<'a> FrameMaterial<'a> {
             let frame = BakedFrame::fetch((mesh, tangents.get(mesh)), hit.prim, smooth);
             frame.place((hit.u, hit.v), s);
         }
+    }
+
+    /// The relief that is geometry of its own, with horizons for rays that leave it. Makes them, if nobody has yet.
+    #[must_use]
+    pub fn relief_with_horizons(&self) -> Option<ReliefField<'a>> {
+        let (heights, wrap, turned_over) = self.relief_slot?;
+        let horizons = heights.horizons(wrap, turned_over);
+        self.relief.map(|relief| relief.with_horizons(horizons))
     }
 
     /// The relief, whether it is searched for places that shadow each other or is geometry of its own.

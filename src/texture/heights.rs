@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::{ConeMap, HeightMap, HeightPyramid, Levels, SlopeMoments, Wrap};
+use super::{ConeMap, HeightMap, HeightPyramid, HorizonMap, Levels, SlopeMoments, Wrap};
 
 /// A height map with everything that methods derive from it. Each part is made when it is first asked for,
 /// then kept.
@@ -15,6 +15,7 @@ pub struct Heights {
     moments: [OnceLock<Vec<SlopeMoments>>; Wrap::ALL.len()],
     pyramids: [OnceLock<HeightPyramid>; Wrap::ALL.len()],
     cones: [[OnceLock<ConeMap>; 2]; Wrap::ALL.len()],
+    horizons: [OnceLock<HorizonMap>; 2],
 }
 
 impl Heights {
@@ -29,6 +30,7 @@ impl Heights {
             moments: Default::default(),
             pyramids: Default::default(),
             cones: Default::default(),
+            horizons: Default::default(),
         }
     }
 
@@ -84,11 +86,23 @@ impl Heights {
             .get_or_init(|| ConeMap::new(&self.map, wrap, inverted))
     }
 
-    /// Heap bytes of pyramids and cones made so far.
+    /// How steeply rays must leave the heights, or the heights turned over, to be in nobody's shadow; `None` for a slot
+    /// that does not repeat.
+    #[must_use]
+    pub fn horizons(&self, wrap: Wrap, inverted: bool) -> Option<&HorizonMap> {
+        let horizons = &self.horizons[usize::from(inverted)];
+        (wrap == Wrap::Repeat)
+            .then(|| horizons.get_or_init(|| HorizonMap::new(&self.map, inverted)))
+    }
+
+    /// Heap bytes of pyramids, cones and horizons made so far.
     #[must_use]
     pub fn search_bytes(&self) -> usize {
         let pyramids = self.pyramids.iter().filter_map(OnceLock::get);
         let cones = self.cones.iter().flatten().filter_map(OnceLock::get);
-        pyramids.map(HeightPyramid::bytes).sum::<usize>() + cones.map(ConeMap::bytes).sum::<usize>()
+        let horizons = self.horizons.iter().filter_map(OnceLock::get);
+        pyramids.map(HeightPyramid::bytes).sum::<usize>()
+            + cones.map(ConeMap::bytes).sum::<usize>()
+            + horizons.map(HorizonMap::bytes).sum::<usize>()
     }
 }

@@ -21,6 +21,7 @@ const DOORS: [(&str, &[&str]); 18] = [
             "surface/displaced",
             "texture/cone_map",
             "texture/destair",
+            "texture/horizon_map",
             "render",
             "measure/bench",
             "measure/stability",

@@ -25,6 +25,7 @@ pub fn closest_hits(
     }
     tracer.run_until(mesh, Search::Closest, frame.level, &|| frame.stop.now());
     counters.relief_steps += tracer.steps();
+    counters.walks_spared += tracer.walks_spared();
     let mut lanes = hits.displaced.take().unwrap_or_default();
     lanes.places = Places::EMPTY;
     let ends = rays.lanes.t_max;
@@ -82,6 +83,7 @@ pub fn any_hits(
     }
     tracer.run_until(mesh, Search::Any, frame.level, &|| frame.stop.now());
     counters.relief_steps += tracer.steps();
+    counters.walks_spared += tracer.walks_spared();
     let mut passage = Passage::default();
     for (index, place) in places.iter().enumerate() {
         let mut blocked = tracer.is_hit(index);

@@ -7,9 +7,9 @@ use super::{Column, PLACES, Places, Shadows, StageWatch, Surfaces, get3};
 use crate::geometry::HitLanes;
 use crate::math::simd::{Kernel, Simd};
 use crate::math::wide::Wide;
-use crate::math::{Real, V3};
+use crate::math::{Real, V2, V3};
 use crate::surface::SurfaceParts;
-use crate::surface::mapping::relief::{light_ray, rising_ray};
+use crate::surface::mapping::relief::{ReliefField, light_ray, rising_ray};
 
 /// From a point of a relief to where a ray from it in the direction `dir` starts on the mesh.
 ///
@@ -46,11 +46,13 @@ pub fn shadow_by_relief(
         counters.relief_shadow_walks += lit.count();
         let mut rays = LightRays::default();
         frame.level.run_or_plain(AimOverRelief {
+            field,
             surfaces,
             shadows,
             lit,
             rays: &mut rays,
         });
+        counters.walks_spared += rays.clear.count();
         walks.clear();
         let uv = &surfaces.relief.uv;
         for place in (lit & rays.up).iter() {
@@ -76,8 +78,10 @@ pub fn shadow_by_relief(
 struct LightRays {
     /// Change of the texture coordinate per unit of displacement.
     per_z: [Column; 2],
-    /// Places that see the light over the relief's own surface; the others need no walk.
+    /// Places that see the light over the relief's own surface and must walk to know more.
     up: Places,
+    /// Places whose horizon says that nothing of the relief is in the way.
+    clear: Places,
     /// Places whose surface faces away from it.
     under: Places,
 }
@@ -87,12 +91,14 @@ impl Default for LightRays {
         Self {
             per_z: [Column::splat(0.0); 2],
             up: Places::EMPTY,
+            clear: Places::EMPTY,
             under: Places::EMPTY,
         }
     }
 }
 
 struct AimOverRelief<'a> {
+    field: &'a ReliefField<'a>,
     surfaces: &'a Surfaces,
     shadows: &'a Shadows,
     lit: Places,
@@ -116,7 +122,10 @@ impl Kernel for AimOverRelief<'_> {
             let (per_z, is_up) = light_ray(gradients, n, wi);
             to.per_z[0].set(group, per_z.x);
             to.per_z[1].set(group, per_z.y);
-            to.up.add(group, mask & is_up);
+            let uv = [0, 1].map(|k| from.uv[k].get(simd, group));
+            let is_clear = self.field.is_clear(V2::new(uv[0], uv[1]), per_z);
+            to.up.add(group, mask & is_up & !is_clear);
+            to.clear.add(group, mask & is_up & is_clear);
             to.under.add(group, mask & !is_up);
         }
     }

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::charts::Shape;
 use super::pieces::Piece;
-use super::sheets::{Edge, Sheet, TRIANGLE};
+use super::sheets::{Edge, PlanTriangle, Sheet, TRIANGLE};
 use super::trace::SurfaceHit;
 use super::{Displacement, Reliefs, texels_at};
 use crate::geometry::{Ray, TriangleMesh};
@@ -12,22 +12,22 @@ use crate::surface::mapping::relief::{ReliefField, ReliefRay, Side};
 
 /// Share of a chart's width by which it reaches over its edges, so that no ray slips between neighbours.
 /// A thousandth of what a float can tell.
-const OVERLAP: f64 = 1e-10;
+pub(super) const OVERLAP: f64 = 1e-10;
 
 /// More than what a dozen operations in doubles round by, as a share of the largest number among them.
-const ROUNDING: f64 = 1e-14;
+pub(super) const ROUNDING: f64 = 1e-14;
 
 /// The axes of a flat chart: weights of the second and third of three corners, and the displacement along a normal that
 /// need not be upright.
 #[derive(Debug, Clone, Copy)]
 pub struct Axes {
-    origin: DVec3,
+    pub(super) origin: DVec3,
     /// First edges and normal.
-    along: [DVec3; 3],
+    pub(super) along: [DVec3; 3],
     /// Rows of the inverse of the axes.
-    rows: [DVec3; 3],
+    pub(super) rows: [DVec3; 3],
     /// Volume that the axes span; negative where the corners wind clockwise around the normal.
-    det: f64,
+    pub(super) det: f64,
 }
 
 impl Axes {
@@ -82,10 +82,12 @@ pub struct FlatPrism<'a, 'm> {
     prim: u32,
     /// All triangles, if there are more than that.
     sheet: Option<&'a Sheet>,
-    sides: &'a [Edge],
-    axes: Axes,
+    /// Where the triangle of a sheet is that was met last.
+    near: Option<PlanTriangle>,
+    pub(super) sides: &'a [Edge],
+    pub(super) axes: Axes,
     /// Place of the first corner in texels, and the change of it by both weights.
-    texels: [[f64; 2]; 3],
+    pub(super) texels: [[f64; 2]; 3],
 }
 
 impl<'a, 'm> FlatPrism<'a, 'm> {
@@ -108,6 +110,7 @@ impl<'a, 'm> FlatPrism<'a, 'm> {
                     field,
                     prim,
                     sheet: Some(sheet),
+                    near: None,
                     sides: &sheet.sides,
                     axes: sheet.axes,
                     texels: sheet.texels,
@@ -120,6 +123,7 @@ impl<'a, 'm> FlatPrism<'a, 'm> {
                     field,
                     prim,
                     sheet: None,
+                    near: None,
                     sides: &TRIANGLE,
                     axes: Axes::new(mesh.corners(prim).map(|p| p.as_dvec3()), normal),
                     texels: by_weights(vertices.map(|i| texels_at(mesh, field, i))),
@@ -140,8 +144,8 @@ impl<'a, 'm> FlatPrism<'a, 'm> {
         mesh.attributes[self.prim as usize].material
     }
 
-    /// The part of the ray between the sides and between the extremes of the relief, before
-    /// `t_max`, and the distance at which it begins.
+    /// The part of the ray between the sides and between the extremes of the relief, before `t_max`, and the distance
+    /// at which it begins.
     #[inline]
     pub fn clip(&self, ray: &Ray, t_max: f64) -> Option<(ReliefRay, f64)> {
         let o = ray.origin.as_dvec3();
@@ -150,15 +154,15 @@ impl<'a, 'm> FlatPrism<'a, 'm> {
         let [low, high] = self.field.range();
         // And more than the displacement of a place is rounded by: a relief without any would be passed.
         let rounding = self.axes.rounding(o);
-        let margin = (high - low) * 1e-6 + (high.abs() + low.abs()) * 1e-12 + rounding;
+        let margin = rounding + ((high - low) * 1e-6 + (high.abs() + low.abs()) * 1e-12);
         let sides = self.sides.iter().map(|side| {
             let [x, y] = side.ways;
-            (side.at + OVERLAP + x * b1 + y * b2, x * r1 + y * r2)
+            (b1 * x + (side.at + OVERLAP) + b2 * y, r1 * x + r2 * y)
         });
-        let ends = [(high + margin - z, -rz), (z - low + margin, rz)];
+        let ends = [(margin + high - z, 0.0 - rz), (z - low + margin, rz)];
         let (mut from, mut to) = (0.0_f64, t_max);
         for (value, rate) in sides.chain(ends) {
-            let at = -value / rate;
+            let at = (0.0 - value) / rate;
             if rate > 0.0 {
                 from = from.max(at);
             } else if rate < 0.0 {
@@ -170,14 +174,15 @@ impl<'a, 'm> FlatPrism<'a, 'm> {
         if !(from <= to && to < f64::INFINITY) {
             return None;
         }
-        let z = z + rz * from;
         let start = self.texels(b1 + r1 * from, b2 + r2 * from);
-        let above = z >= high || (z > low && z >= self.field.displacement(start));
         let [_, t1, t2] = self.texels;
+        let rate = [0, 1].map(|k| t1[k] * r1 + t2[k] * r2);
+        let z = z + rz * from;
+        let above = z >= high || (z > low && z >= self.field.displacement(start));
         Some((
             ReliefRay {
                 start,
-                rate: [0, 1].map(|k| t1[k] * r1 + t2[k] * r2),
+                rate,
                 z,
                 z_rate: rz,
                 end: to - from,
@@ -187,8 +192,8 @@ impl<'a, 'm> FlatPrism<'a, 'm> {
         ))
     }
 
-    /// Everything about the point that the ray meets at distance `t`.
-    pub fn hit(&mut self, mesh: &TriangleMesh, ray: &Ray, t: f64) -> SurfaceHit {
+    /// The point that the ray meets at distance `t`.
+    pub fn point(&self, ray: &Ray, t: f64) -> FlatPoint {
         let way = ray.dir.as_dvec3() * t;
         let p = ray.origin.as_dvec3() + way;
         // What the walk and this rounded. Next to a plane through the origin floats tell more than that.
@@ -201,24 +206,63 @@ impl<'a, 'm> FlatPrism<'a, 'm> {
         let along2 = e2 + n * (slope_x * t2[0] + slope_y * t2[1]);
         // Towards the side of the triangles' own winding that the normal is on.
         let normal = along1.cross(along2).normalize_or(n) * self.axes.det.signum();
-        let normal: Vec3 = normal.as_vec3();
+        FlatPoint::new(p, rounding, normal, [b1, b2])
+    }
+
+    /// Everything about a point at distance `t`.
+    pub fn hit(&mut self, mesh: &TriangleMesh, t: f64, point: FlatPoint) -> SurfaceHit {
         let weights = match self.sheet {
-            None => [b1, b2],
+            None => point.place,
             Some(sheet) => {
-                let (prim, weights) = sheet.triangle_at(mesh, [b1, b2], self.prim);
-                self.prim = prim;
+                let near = self.near.filter(|near| near.prim() == self.prim);
+                let near = near.unwrap_or_else(|| sheet.triangle(mesh, self.prim));
+                let (found, weights) = sheet.triangle_at(mesh, point.place, near);
+                self.prim = found.prim();
+                self.near = Some(found);
                 weights
             }
         };
-        let p = p.as_vec3();
         SurfaceHit {
             t: t as f32,
             prim: self.prim,
             weights: weights.map(|w| w as f32),
+            p: point.p,
+            bound: point.bound,
+            normal: point.normal,
+        }
+    }
+}
+
+/// A point on a flat relief.
+#[derive(Debug, Clone, Copy)]
+pub struct FlatPoint {
+    p: Vec3,
+    /// How far rounding may have taken it off the surface.
+    bound: f32,
+    normal: Vec3,
+    /// Weights of the second and third corner of the prism's axes.
+    place: [f64; 2],
+}
+
+impl FlatPoint {
+    /// No point.
+    pub const NONE: Self = Self {
+        p: Vec3::ZERO,
+        bound: 0.0,
+        normal: Vec3::ZERO,
+        place: [0.0; 2],
+    };
+
+    /// A point that is rounded by no more than this so far.
+    #[inline(always)]
+    pub fn new(p: DVec3, rounding: DVec3, normal: DVec3, place: [f64; 2]) -> Self {
+        let (p, normal) = (p.as_vec3(), normal.as_vec3());
+        Self {
             p,
             // And the point once more.
             bound: (p.abs() * f32::EPSILON + rounding.as_vec3()).dot(normal.abs()),
             normal,
+            place,
         }
     }
 }

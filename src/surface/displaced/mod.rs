@@ -22,12 +22,15 @@
 
 mod cells;
 mod charts;
+mod clip_lanes;
 mod fine;
 mod flat;
+mod hit_lanes;
 mod local;
 mod micro;
 mod parts;
 mod pieces;
+mod prism_lanes;
 mod seams;
 mod sheets;
 mod smooth;
@@ -83,6 +86,10 @@ pub struct Displacement {
     sheets: Vec<Sheet>,
     /// Displaced triangles: those that are walked as flat reliefs, and those that are cut up.
     kinds: [usize; 2],
+    /// Pieces that are walked, if they are so few that every ray may be held against each.
+    few_flat: Vec<u32>,
+    /// For each material whether any of its triangles is walked.
+    walked: Vec<bool>,
     /// Displacement normals, one for each vertex of the mesh.
     normals: Vec<Vec3>,
     seams: Seams,
@@ -94,6 +101,9 @@ pub struct Displacement {
     /// All micro-triangles, once they were asked for.
     micro: Mutex<Option<Arc<MicroMesh>>>,
 }
+
+/// So many flat reliefs are held against rays in lanes faster than a tree finds those that lie along each.
+const FEW_FLAT: usize = 16;
 
 /// Fewer pieces than this are not worth a task.
 const FEW: usize = 1024;
@@ -130,8 +140,15 @@ impl Displacement {
                 _ => prism(mesh, reliefs, &normals, piece),
             })
             .unzip();
+        let mut walked = vec![false; reliefs.fields.len()];
+        for piece in &pieces {
+            let material = mesh.attributes[piece.prim as usize].material;
+            walked[usize::from(material)] |= !matches!(piece.shape, Shape::Fine(_));
+        }
         Self {
             kinds: [flat, prims.len() - flat],
+            few_flat: few_flat(&pieces),
+            walked,
             pieces,
             sheets,
             normals,
@@ -206,6 +223,17 @@ impl Displacement {
         self.kinds
     }
 
+    /// Pieces that are walked as flat reliefs, if there are but a few; none if there are more.
+    fn few_flat(&self) -> &[u32] {
+        &self.few_flat
+    }
+
+    /// Whether any triangle of a material is walked as a flat relief.
+    #[must_use]
+    pub fn walks(&self, material: usize) -> bool {
+        self.walked.get(material).is_some_and(|walked| *walked)
+    }
+
     /// Flat reliefs of many triangles that are walked as one.
     #[must_use]
     pub const fn sheets(&self) -> usize {
@@ -221,6 +249,20 @@ impl Displacement {
             + size_of_val(self.normals.as_slice())
             + size_of_val(self.sheets.as_slice())
             + self.sheets.iter().map(Sheet::bytes).sum::<usize>()
+    }
+}
+
+/// Pieces that are not cut up; none if there are more than [`FEW_FLAT`].
+fn few_flat(pieces: &[Piece]) -> Vec<u32> {
+    let flat = pieces
+        .iter()
+        .zip(0..)
+        .filter(|(piece, _)| !matches!(piece.shape, Shape::Fine(_)));
+    let few: Vec<u32> = flat.map(|(_, i)| i).take(FEW_FLAT + 1).collect();
+    if few.len() > FEW_FLAT {
+        Vec::new()
+    } else {
+        few
     }
 }
 

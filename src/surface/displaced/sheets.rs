@@ -138,18 +138,24 @@ impl Sheet {
 
     /// The triangle at a place in the sheet's axes, and the weights of the triangle's second and third corner there. It
     /// may be `near`, another of its triangles, which is looked at first.
-    pub fn triangle_at(&self, mesh: &TriangleMesh, place: [f64; 2], near: u32) -> (u32, [f64; 2]) {
+    pub fn triangle_at(
+        &self,
+        mesh: &TriangleMesh,
+        place: [f64; 2],
+        near: PlanTriangle,
+    ) -> (PlanTriangle, [f64; 2]) {
         let place = DVec2::from(place);
-        let (inside, weights) = self.weights_in(mesh, near, place);
+        let (inside, weights) = near.weights(place);
         // On its edge another may come first in the plan, whatever was near.
         if inside > CLEARLY {
             return (near, weights);
         }
         let mut best = (f64::NEG_INFINITY, (near, weights));
         for &prim in self.plan.cell(place) {
-            let (inside, weights) = self.weights_in(mesh, prim, place);
+            let triangle = self.triangle(mesh, prim);
+            let (inside, weights) = triangle.weights(place);
             if inside > best.0 {
-                best = (inside, (prim, weights));
+                best = (inside, (triangle, weights));
             }
             if inside >= 0.0 {
                 break;
@@ -158,16 +164,19 @@ impl Sheet {
         best.1
     }
 
-    /// The smallest of the weights of a triangle's corners at a place, and those of the second and third.
-    fn weights_in(&self, mesh: &TriangleMesh, prim: u32, place: DVec2) -> (f64, [f64; 2]) {
+    /// A triangle in the sheet's axes.
+    pub fn triangle(&self, mesh: &TriangleMesh, prim: u32) -> PlanTriangle {
         let [p0, p1, p2] = mesh.corners(prim).map(|p| {
             let [b1, b2, _] = self.axes.weights(p.as_dvec3());
             DVec2::new(b1, b2)
         });
-        let (e1, e2, way) = (p1 - p0, p2 - p0, place - p0);
-        let area = e1.perp_dot(e2);
-        let [w1, w2] = [way.perp_dot(e2), e1.perp_dot(way)].map(|w| w / area);
-        (w1.min(w2).min(1.0 - w1 - w2), [w1, w2])
+        let edges = [p1 - p0, p2 - p0];
+        PlanTriangle {
+            prim,
+            first: p0,
+            edges,
+            area: edges[0].perp_dot(edges[1]),
+        }
     }
 
     /// Heap bytes.
@@ -175,6 +184,30 @@ impl Sheet {
         size_of_val(self.sides.as_slice())
             + size_of_val(self.plan.starts.as_slice())
             + size_of_val(self.plan.prims.as_slice())
+    }
+}
+
+/// A triangle in a sheet's axes.
+#[derive(Debug, Clone, Copy)]
+pub struct PlanTriangle {
+    prim: u32,
+    first: DVec2,
+    edges: [DVec2; 2],
+    /// Twice that.
+    area: f64,
+}
+
+impl PlanTriangle {
+    pub const fn prim(&self) -> u32 {
+        self.prim
+    }
+
+    /// The smallest of the weights of its corners at a place, and those of the second and third.
+    fn weights(&self, place: DVec2) -> (f64, [f64; 2]) {
+        let [e1, e2] = self.edges;
+        let way = place - self.first;
+        let [w1, w2] = [way.perp_dot(e2), e1.perp_dot(way)].map(|w| w / self.area);
+        (w1.min(w2).min(1.0 - w1 - w2), [w1, w2])
     }
 }
 

@@ -3,8 +3,10 @@
 use glam::Vec3;
 
 use super::charts::Shape;
+use super::clip_lanes::{Clipped, clip_all, put};
 use super::fine::{Best, FineCounters, FineRay, Meeting, Patch, ReadyPatch};
-use super::flat::FlatPrism;
+use super::flat::{FlatPoint, FlatPrism};
+use super::hit_lanes::points_all;
 use super::micro::MicroMesh;
 use super::{Displacement, Reliefs};
 use crate::geometry::bvh::AcceptAll;
@@ -102,6 +104,12 @@ pub struct Tracer {
     jobs: Vec<Job>,
     relief_rays: Vec<ReliefRay>,
     walks: Vec<Walk>,
+    /// Rays that meet the flat relief of one piece, and where.
+    met: Vec<(usize, f64)>,
+    /// Points on a few flat reliefs, by ray.
+    points: Vec<FlatPoint>,
+    /// Walks that the horizon of their start spared.
+    spared: u64,
 }
 
 /// What is traced.
@@ -149,6 +157,7 @@ impl Tracer {
         self.asked.clear();
         self.rays.clear();
         self.ends.clear();
+        self.spared = 0;
     }
 
     /// Adds a ray that ends at `t_max`.
@@ -178,6 +187,12 @@ impl Tracer {
         self.asked.iter().map(|asked| asked.steps).sum()
     }
 
+    /// Walks of these rays that a horizon spared.
+    #[must_use]
+    pub const fn walks_spared(&self) -> u64 {
+        self.spared
+    }
+
     /// The rays' places, and the steps that each took.
     pub fn steps_by_place(&self) -> impl Iterator<Item = (usize, u64)> {
         self.asked.iter().map(|asked| (asked.place, asked.steps))
@@ -200,15 +215,64 @@ impl Tracer {
         if let Some(micro) = mesh.micro {
             self.meet_all(micro, search);
         }
-        let [flat, _] = mesh.displacement.kinds();
-        if mesh.micro.is_none() || flat > 0 {
+        let few = mesh.displacement.few_flat();
+        let [flat, fine] = mesh.displacement.kinds();
+        if (mesh.micro.is_none() && fine > 0) || (few.is_empty() && flat > 0) {
             level.run_or_plain(Visit {
                 mesh,
                 search,
                 tracer: self,
                 stop,
             });
-            self.walk(mesh, level);
+        }
+        for &piece in few {
+            if stop() {
+                return;
+            }
+            self.clip(mesh, piece, search, level);
+        }
+        if stop() {
+            return;
+        }
+        self.walk(mesh, level);
+        if search == Search::Closest {
+            for &piece in few {
+                self.find_points(mesh, piece, level);
+            }
+        }
+    }
+
+    /// The parts of all rays within one of a few flat reliefs.
+    fn clip(&mut self, mesh: DisplacedMesh<'_, '_>, piece: u32, search: Search, level: SimdLevel) {
+        let Some(prism) = FlatPrism::new(mesh.mesh, &mesh.reliefs, mesh.displacement, piece) else {
+            return;
+        };
+        let ends = &mut self.ends;
+        ends.clear();
+        ends.extend(self.asked.iter().map(|asked| {
+            let done = asked.blocked || (search == Search::Any && asked.best.hit.is_some());
+            if done { -1.0 } else { asked.best.t }
+        }));
+        let mut jobs = Jobs {
+            piece,
+            material: prism.material(mesh.mesh),
+            jobs: &mut self.jobs,
+            spared: &mut self.spared,
+        };
+        clip_all(level, &prism, (&self.rays, ends), &mut jobs);
+    }
+
+    /// The points that rays meet on one of a few flat reliefs.
+    fn find_points(&mut self, mesh: DisplacedMesh<'_, '_>, piece: u32, level: SimdLevel) {
+        let met = self.asked.iter().enumerate().filter_map(|(i, asked)| {
+            let (_, t) = asked.flat.filter(|(met, _)| *met == piece)?;
+            Some((i, t))
+        });
+        self.met.clear();
+        self.met.extend(met);
+        self.points.resize(self.asked.len(), FlatPoint::NONE);
+        if let Some(prism) = FlatPrism::new(mesh.mesh, &mesh.reliefs, mesh.displacement, piece) {
+            points_all(level, &prism, &self.rays, &self.met, &mut self.points);
         }
     }
 
@@ -322,7 +386,12 @@ impl Hits<'_, '_, '_> {
                 self.prism = Some((piece, prism));
             }
             let (_, prism) = self.prism.as_mut()?;
-            return Some(prism.hit(mesh, &self.tracer.rays[index], t));
+            let point = if displacement.few_flat().is_empty() {
+                prism.point(&self.tracer.rays[index], t)
+            } else {
+                self.tracer.points[index]
+            };
+            return Some(prism.hit(mesh, t, point));
         }
         let micro = asked.best.hit?;
         let patch = Patch::new(mesh, (&reliefs, displacement), micro.leaf.0)?;
@@ -339,6 +408,32 @@ impl Iterator for Hits<'_, '_, '_> {
         }
         self.next += 1;
         Some(self.at(self.next - 1))
+    }
+}
+
+/// Where walks over a flat relief are listed.
+struct Jobs<'a> {
+    piece: u32,
+    material: u16,
+    jobs: &'a mut Vec<Job>,
+    spared: &'a mut u64,
+}
+
+impl Clipped for Jobs<'_> {
+    #[inline(always)]
+    fn take(&mut self, index: usize, part: ReliefRay, from: f64) {
+        self.jobs.push(Job {
+            asked: index,
+            piece: self.piece,
+            material: self.material,
+            from,
+            ray: part,
+        });
+    }
+
+    #[inline(always)]
+    fn spare(&mut self, count: u32) {
+        *self.spared += u64::from(count);
     }
 }
 
@@ -365,10 +460,15 @@ impl Kernel for Visit<'_, '_, '_> {
         let mut patches: [Option<ReadyPatch<'_, '_>>; 1 << PATCHES_LOG2] =
             [None; 1 << PATCHES_LOG2];
         let Tracer {
-            asked, rays, jobs, ..
+            asked,
+            rays,
+            jobs,
+            spared,
+            ..
         } = self.tracer;
         let door = (&reliefs, displacement);
         let mut meeting = Meeting::new(&reliefs);
+        let few = !displacement.few_flat().is_empty();
         for (index, (asked, &ray)) in asked.iter_mut().zip(&*rays).enumerate() {
             if index % RAYS_BETWEEN_STOPS == 0 && (self.stop)() {
                 break;
@@ -380,6 +480,7 @@ impl Kernel for Visit<'_, '_, '_> {
             let mut boxes = displacement.tree.along(&ray);
             while let Some(i) = boxes.next(asked.best.t) {
                 match displacement.pieces[i as usize].shape {
+                    Shape::Flat | Shape::Sheet(_) if few => {}
                     Shape::Flat | Shape::Sheet(_) => {
                         let kept = &mut prisms[kept_at(i, PRISMS_LOG2)];
                         if kept.is_none_or(|(known, _)| known != i) {
@@ -387,14 +488,14 @@ impl Kernel for Visit<'_, '_, '_> {
                             *kept = prism.map(|prism| (i, prism));
                         }
                         let Some((_, prism)) = kept else { continue };
-                        if let Some((ray, from)) = prism.clip(&ray, f64::from(asked.best.t)) {
-                            jobs.push(Job {
-                                asked: index,
+                        if let Some((part, from)) = prism.clip(&ray, f64::from(asked.best.t)) {
+                            let mut jobs = Jobs {
                                 piece: i,
                                 material: prism.material(mesh),
-                                from,
-                                ray,
-                            });
+                                jobs,
+                                spared,
+                            };
+                            put(prism, index, (part, from), &mut jobs);
                         }
                     }
                     // Met already.

@@ -7,7 +7,7 @@ use super::tilt::Tilt;
 use super::{BoundHeight, BoundNormal, Lookup, MappingSettings, Method};
 use crate::math::{Real, V2, gamma};
 use crate::surface::SurfaceInteraction;
-use crate::texture::{ConeMap, HeightPyramid};
+use crate::texture::{ConeMap, HeightPyramid, HorizonMap};
 
 /// Below this cosine between normal and view, plain parallax does not shift: the division by it would
 /// throw the coordinate more than 10⁴ heights away.
@@ -24,6 +24,8 @@ pub struct MaterialMaps<'a> {
     pub slope: Option<BoundNormal<'a>>,
     /// Extremes of the heights, for the exact walk and for relief that shadows itself.
     pub pyramid: Option<&'a HeightPyramid>,
+    /// Horizons of the heights, for relief that shadows itself.
+    pub horizons: Option<&'a HorizonMap>,
     /// Cones over the heights, for relaxed cone stepping.
     pub cones: Option<&'a ConeMap>,
 }
@@ -99,6 +101,7 @@ impl<'a> MaterialMapping<'a> {
                         if settings.search.self_shadow =>
                     {
                         ReliefField::new(height, pyramid)
+                            .map(|field| field.with_horizons(maps.horizons))
                     }
                     _ => None,
                 };

@@ -138,9 +138,14 @@ impl MappingSettings {
     #[must_use]
     pub const fn needs_pyramid(&self) -> bool {
         self.displaces()
-            || self.use_parallax
-                && (matches!(self.method, Method::Exact)
-                    || self.method.searches() && self.search.self_shadow)
+            || self.use_parallax && matches!(self.method, Method::Exact)
+            || self.shadows_itself()
+    }
+
+    /// Whether places that are searched for lie in each other's shadow.
+    #[must_use]
+    pub const fn shadows_itself(&self) -> bool {
+        self.use_parallax && self.method.searches() && self.search.self_shadow
     }
 
     /// Whether cones over height maps are asked for.

@@ -22,6 +22,7 @@ pub(super) fn cost_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
         ("Perturbed points", counters.perturbations),
         ("Relief steps", counters.relief_steps),
         ("Relief shadow walks", counters.relief_shadow_walks),
+        ("Walks spared by horizons", counters.walks_spared),
         ("Cut-out tests", counters.cutout_tests),
         ("Highlight powers", counters.power_calls),
     ];

@@ -4,6 +4,7 @@
 //! dozen operations with directions of unit length stay below 2·10⁻⁶.
 
 mod displaced;
+mod horizons;
 mod mapping;
 mod picture;
 mod walk;

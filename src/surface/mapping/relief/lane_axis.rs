@@ -59,6 +59,21 @@ impl<S: Simd> LaneAxis<S> {
         self.forward = self.rate.simd_ge(0.0);
     }
 
+    /// All lanes at places on an axis of `n` texels.
+    #[inline(always)]
+    pub fn at_rest(simd: S, n: S::f64s, place: S::f64s) -> Self {
+        let zero = S::f64s::splat(simd, 0.0);
+        let mut axis = Self::idle(simd);
+        axis.take(n, zero.simd_eq(zero), [place, zero]);
+        axis
+    }
+
+    /// The cell in the picture that each walk is in.
+    #[inline(always)]
+    pub const fn cell(&self) -> S::f64s {
+        self.local
+    }
+
     /// Texels per unit of the parameter.
     #[inline(always)]
     pub const fn rate(&self) -> S::f64s {

@@ -5,12 +5,14 @@
 //! - `cones`: steps as wide as a map of cones allows
 //! - `walk`, `axis`, `parabola`: cell by cell through a pyramid of extremes, exact
 //! - `walk_lanes`, `lane_axis`: many walks in step
+//! - `field_lanes`: the relief at many places
 //! - `exact`: the walk for surface points, for the eye and for lights
 
 mod axis;
 mod cell_span;
 mod cones;
 mod exact;
+mod field_lanes;
 mod lane_axis;
 mod march;
 mod parabola;

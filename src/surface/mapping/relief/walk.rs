@@ -1,25 +1,26 @@
 //! The exact walk: where a straight ray first meets the bilinear relief.
 
 use super::axis::Axis;
-use super::cell_span::CellSpan;
+use super::cell_span::{CellSpan, sure_cell};
 use super::parabola::first_not_above;
 use super::walk_lanes::{Stored, walk_all};
 use crate::math::simd::SimdLevel;
 use crate::math::{Bits, Mask as _, Real, V2};
 use crate::surface::mapping::BoundHeight;
-use crate::texture::{HeightPyramid, Layout, StoredHeights, Wrap};
+use crate::texture::{Addressing, HeightPyramid, HorizonMap, Layout, StoredHeights, Wrap};
 
 /// A relief with the pyramid over it, made ready for walks.
 #[derive(Debug, Clone, Copy)]
 pub struct ReliefField<'a> {
     /// Displacement over the chart.
     pub height: BoundHeight<'a>,
-    stored: StoredHeights<'a>,
+    pub(super) stored: StoredHeights<'a>,
     layout: Layout,
     /// Displacement is `stored · factor + offset`.
     factor: f64,
     offset: f64,
     range: [f64; 2],
+    pub(super) horizons: Option<&'a HorizonMap>,
 }
 
 /// A straight ray over a flat chart, by a parameter τ ≥ 0 of any length.
@@ -114,7 +115,7 @@ impl Walk {
 pub(super) const STEP_CAP: f64 = 524_288.0;
 
 /// Farther from the origin than this many texels nothing is looked for: cells could not be told apart.
-const FARTHEST: f64 = 1e12;
+pub(super) const FARTHEST: f64 = 1e12;
 
 impl<'a> ReliefField<'a> {
     /// Ties a relief to the pyramid of its map; `None` for the pyramid of another.
@@ -135,6 +136,7 @@ impl<'a> ReliefField<'a> {
             factor: f64::from(height.scale) * unit,
             offset: f64::from(height.offset),
             range: [0.0; 2],
+            horizons: None,
         };
         let top = [[0; 3]; 2];
         field.range = match stored {
@@ -142,6 +144,56 @@ impl<'a> ReliefField<'a> {
             StoredHeights::F32(all) => field.with(all).extremes(field.layout.top, top),
         };
         Some(field)
+    }
+
+    /// The same with the horizons of its map, turned over if more height is less displacement.
+    #[must_use]
+    pub const fn with_horizons(self, horizons: Option<&'a HorizonMap>) -> Self {
+        Self { horizons, ..self }
+    }
+
+    /// Whether a ray that rises from the relief at `uv` is known to meet nothing of it, without a walk; in each lane.
+    /// `per_z` is the change of the texture coordinate per unit of displacement.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_clear<F: Real>(&self, uv: V2<F>, per_z: V2<F>) -> F::Mask {
+        let Some(horizons) = self.horizons else {
+            return uv.x.lt(uv.x);
+        };
+        let Addressing { scale, offset, .. } = self.height.addressing;
+        let size = self.layout.size.map(|n| n as f32);
+        let x = sure_cell(uv.x * scale.x + offset.x, size[0]);
+        let y = sure_cell(uv.y * scale.y + offset.y, size[1]);
+        let rate = V2::new(per_z.x * (scale.x * size[0]), per_z.y * (scale.y * size[1]));
+        let slope = horizons.slope([x.0, y.0], rate);
+        let [low, high] = self.range;
+        let texels = (rate.x * rate.x + rate.y * rate.y).sqrt();
+        let needed = slope * texels * ((high - low) as f32);
+        // No for NaN.
+        x.1 & y.1 & needed.le(uv.x.splat(1.0))
+    }
+
+    /// [`Self::is_clear`] for a ray that starts on the relief or above it.
+    #[inline]
+    #[must_use]
+    pub fn is_clear_along(&self, ray: &ReliefRay) -> bool {
+        let Some(horizons) = self.horizons else {
+            return false;
+        };
+        let near = ray.start.iter().all(|place| place.abs() < FARTHEST);
+        if !near || ray.side != Side::Above || !(ray.z_rate > 0.0) {
+            return false;
+        }
+        let cell = [0, 1].map(|k| wrapped(ray.start[k].floor() as i64, self.layout.size[k]));
+        let [x, y] = ray.rate;
+        let [low, high] = self.range;
+        let needed = horizons.slope_towards(cell, ray.rate) * (x * x + y * y).sqrt();
+        needed * (high - low) <= ray.z_rate
+    }
+
+    /// What displacements are made of stored numbers by.
+    pub(super) const fn factor_and_offset(&self) -> (f64, f64) {
+        (self.factor, self.offset)
     }
 
     /// Smallest and largest displacement of the whole map.
@@ -361,7 +413,7 @@ impl<'a> ReliefField<'a> {
         }
     }
 
-    const fn with<T>(&self, numbers: &'a [T]) -> Typed<'a, T> {
+    pub(super) const fn with<T>(&self, numbers: &'a [T]) -> Typed<'a, T> {
         Typed {
             numbers,
             layout: self.layout,
@@ -587,6 +639,9 @@ fn larger(a: f64, b: f64) -> f64 {
 /// descended, for nothing.
 #[inline(always)]
 fn start_level(ray: &ReliefRay, top: u32) -> u32 {
+    if ray.z_rate * ray.side.sign() > 0.0 {
+        return 0;
+    }
     let texels = ray.rate[0].abs().max(ray.rate[1].abs()) * ray.end;
     let level = (texels.min(1e9) as u32).max(1).ilog2();
     level.saturating_sub(2).min(top)

@@ -258,9 +258,9 @@ impl Seeds {
 }
 
 /// What all walks over a relief ask for.
-struct LaneRelief<'a, S: Simd, T> {
+pub(super) struct LaneRelief<'a, S: Simd, T> {
     numbers: &'a [T],
-    n: [S::f64s; 2],
+    pub(super) n: [S::f64s; 2],
     factor: S::f64s,
     offset: S::f64s,
     /// Side of the square of the top level.
@@ -273,7 +273,7 @@ struct LaneRelief<'a, S: Simd, T> {
 
 impl<'a, S: Simd, T: Stored> LaneRelief<'a, S, T> {
     #[inline(always)]
-    fn new(simd: S, relief: &Typed<'a, T>) -> Self {
+    pub(super) fn new(simd: S, relief: &Typed<'a, T>) -> Self {
         let layout = &relief.layout;
         Self {
             numbers: relief.numbers,
@@ -296,13 +296,14 @@ impl<'a, S: Simd, T: Stored> LaneRelief<'a, S, T> {
 
     /// Side of the squares that walks start with: see [`start_level`](super::walk::start_level).
     #[inline(always)]
-    fn start_size(&self, rate: [S::f64s; 2], end: S::f64s) -> S::f64s {
+    fn start_size(&self, rate: [S::f64s; 2], end: S::f64s, rises: S::mask64s) -> S::f64s {
         let simd = end.token();
         let texels = rate[0].abs().max(rate[1].abs()) * end;
         // A power of two is all exponent.
         let exponent = S::u64s::splat(simd, 0x7ff0_0000_0000_0000);
         let size = (texels.max(1.0).bitcast::<S::u64s>() & exponent).bitcast::<S::f64s>();
-        (size * 0.25).max(1.0).min(self.top)
+        let size = (size * 0.25).max(1.0).min(self.top);
+        rises.select(S::f64s::splat(simd, 1.0), size)
     }
 
     /// See [`Typed::step_cap`].
@@ -317,7 +318,7 @@ impl<'a, S: Simd, T: Stored> LaneRelief<'a, S, T> {
     /// Displacements at the corners of cells, or the extremes of coarser squares, as they are stored: see
     /// [`Layout::level`](crate::texture::Layout::level). All are whole numbers, exactly.
     #[inline(always)]
-    fn fours(&self, simd: S, inv: S::f64s, [column, row]: [S::f64s; 2]) -> [S::f64s; 4] {
+    pub(super) fn fours(&self, simd: S, inv: S::f64s, [column, row]: [S::f64s; 2]) -> [S::f64s; 4] {
         let (zero, one) = (S::f64s::splat(simd, 0.0), S::f64s::splat(simd, 1.0));
         let is_cell = inv.simd_eq(one);
         let first = is_cell.select(zero, self.end - self.twice * inv);
@@ -419,7 +420,10 @@ impl<S: Simd> Lanes<S> {
         let (sign, end) = (load(simd, &seeds.sign), load(simd, &seeds.end));
         let z = load(simd, &seeds.line[0]) * sign;
         let z_rate = load(simd, &seeds.line[1]) * sign;
-        let (size, cap) = (relief.start_size(rate, end), relief.step_cap(rate, end));
+        let (size, cap) = (
+            relief.start_size(rate, end, z_rate.simd_gt(0.0)),
+            relief.step_cap(rate, end),
+        );
         self.line[0] = merged(taken, z, self.line[0]);
         self.line[1] = merged(taken, z_rate, self.line[1]);
         self.inv_sinking = merged(taken, one / -z_rate, self.inv_sinking);

@@ -1,0 +1,88 @@
+//! A flat prism for kernels that hold many rays against it.
+
+use super::flat::FlatPrism;
+use crate::math::simd::{Simd, SimdBase as _};
+
+/// Most doubles that a vector of any machine has.
+pub const MAX_LANES: usize = 8;
+
+/// A double for each lane, in memory.
+pub type Row = [f64; MAX_LANES];
+
+/// Lanes from memory.
+#[inline(always)]
+pub fn load<S: Simd>(simd: S, row: &Row) -> S::f64s {
+    S::f64s::from_slice(simd, &row[..S::f64s::LEN])
+}
+
+/// Lanes to memory.
+#[inline(always)]
+pub fn store<S: Simd>(x: S::f64s) -> Row {
+    let mut row = [0.0; MAX_LANES];
+    x.store_slice(&mut row[..S::f64s::LEN]);
+    row
+}
+
+/// The numbers of a prism, each in all lanes.
+pub struct PrismLanes<'a, S: Simd> {
+    pub prism: &'a FlatPrism<'a, 'a>,
+    pub origin: [S::f64s; 3],
+    pub along: [[S::f64s; 3]; 3],
+    pub rows: [[S::f64s; 3]; 3],
+    pub texels: [[S::f64s; 2]; 3],
+}
+
+impl<'a, S: Simd> PrismLanes<'a, S> {
+    #[inline(always)]
+    pub fn new(simd: S, prism: &'a FlatPrism<'a, 'a>) -> Self {
+        let axes = &prism.axes;
+        let zero = S::f64s::splat(simd, 0.0);
+        let mut lanes = Self {
+            prism,
+            origin: [zero; 3],
+            along: [[zero; 3]; 3],
+            rows: [[zero; 3]; 3],
+            texels: [[zero; 2]; 3],
+        };
+        for i in 0..3 {
+            lanes.origin[i] = S::f64s::splat(simd, axes.origin[i]);
+            for k in 0..3 {
+                lanes.along[i][k] = S::f64s::splat(simd, axes.along[i][k]);
+                lanes.rows[i][k] = S::f64s::splat(simd, axes.rows[i][k]);
+            }
+            for k in 0..2 {
+                lanes.texels[i][k] = S::f64s::splat(simd, prism.texels[i][k]);
+            }
+        }
+        lanes
+    }
+
+    /// The way from the origin of the axes to places.
+    #[inline(always)]
+    pub fn from_origin(&self, [x, y, z]: [S::f64s; 3]) -> [S::f64s; 3] {
+        let [ox, oy, oz] = self.origin;
+        [x - ox, y - oy, z - oz]
+    }
+
+    /// Places in texels at weights of the second and third corner.
+    #[inline(always)]
+    pub fn texels(&self, b1: S::f64s, b2: S::f64s) -> [S::f64s; 2] {
+        let [t0, t1, t2] = self.texels;
+        [
+            t0[0] + t1[0] * b1 + t2[0] * b2,
+            t0[1] + t1[1] * b1 + t2[1] * b2,
+        ]
+    }
+}
+
+/// In the order of additions of [`glam::DVec3::dot`].
+#[inline(always)]
+pub fn dot<S: Simd>([a, b, c]: [S::f64s; 3], [x, y, z]: [S::f64s; 3]) -> S::f64s {
+    a * x + b * y + c * z
+}
+
+/// As [`glam::DVec3::cross`].
+#[inline(always)]
+pub fn cross<S: Simd>([a, b, c]: [S::f64s; 3], [x, y, z]: [S::f64s; 3]) -> [S::f64s; 3] {
+    [b * z - y * c, c * x - z * a, a * y - x * b]
+}
