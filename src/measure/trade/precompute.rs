@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::{Plan, Precompute, Subject};
 use crate::surface::mapping::Method;
-use crate::texture::{ConeMap, HeightPyramid, MapRole, RawImage, destaired};
+use crate::texture::{ConeMap, HeightPyramid, HorizonMap, MapRole, RawImage, Wrap, destaired};
 
 /// What the methods of a plan need for the map that is looked at. `slopes` is how many slope maps were made for the
 /// measurement, and in how many milliseconds.
@@ -63,8 +63,17 @@ fn precompute(subject: &Subject, methods: &[Method]) -> Vec<Precompute> {
             bytes: pyramid.bytes(),
         });
     }
+    let inverted = slot.gain_and_bias().0 < 0.0;
+    if methods.iter().any(walks) && slot.wrap == Wrap::Repeat {
+        let (horizons, ms) = timed(|| HorizonMap::new(map, inverted));
+        made.push(Precompute {
+            what: "map of horizons (displacement of flat charts, and every relief that shadows itself)"
+                .to_owned(),
+            ms,
+            bytes: horizons.bytes(),
+        });
+    }
     if methods.contains(&Method::RelaxedCone) {
-        let inverted = slot.gain_and_bias().0 < 0.0;
         let (cones, ms) = timed(|| ConeMap::new(map, slot.wrap, inverted));
         made.push(Precompute {
             what: "map of cones (relaxed-cone)".to_owned(),

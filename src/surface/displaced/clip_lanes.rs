@@ -142,7 +142,7 @@ impl<S: Simd> PrismLanes<'_, S> {
     fn clip(&self, simd: S, seeds: &Seeds) -> Parts {
         let zero = S::f64s::splat(simd, 0.0);
         let [x, y, z] = &seeds.origin;
-        let way = self.from_origin([load(simd, x), load(simd, y), load(simd, z)]);
+        let way = self.way_to([load(simd, x), load(simd, y), load(simd, z)]);
         let [x, y, z] = &seeds.dir;
         let dir = [load(simd, x), load(simd, y), load(simd, z)];
         let rounding = {

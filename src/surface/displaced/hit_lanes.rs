@@ -95,7 +95,7 @@ impl<S: Simd> PrismLanes<'_, S> {
             (o[1].abs() + way[1].abs()) * ROUNDING,
             (o[2].abs() + way[2].abs()) * ROUNDING,
         ];
-        let from = self.from_origin(p);
+        let from = self.way_to(p);
         let (b1, b2) = (dot::<S>(self.rows[0], from), dot::<S>(self.rows[1], from));
         let [slope_x, slope_y] = self.prism.field.slopes(simd, self.texels(b1, b2));
         let [_, t1, t2] = self.texels;

@@ -57,9 +57,9 @@ impl<'a, S: Simd> PrismLanes<'a, S> {
         lanes
     }
 
-    /// The way from the origin of the axes to places.
+    /// The ways from the origin of the axes to places.
     #[inline(always)]
-    pub fn from_origin(&self, [x, y, z]: [S::f64s; 3]) -> [S::f64s; 3] {
+    pub fn way_to(&self, [x, y, z]: [S::f64s; 3]) -> [S::f64s; 3] {
         let [ox, oy, oz] = self.origin;
         [x - ox, y - oy, z - oz]
     }

@@ -1,10 +1,12 @@
 //! What rays meet on displaced triangles.
 
+use std::num::NonZeroU32;
+
 use glam::Vec3;
 
 use super::charts::Shape;
 use super::clip_lanes::{Clipped, clip_all, put};
-use super::fine::{Best, FineCounters, FineRay, Meeting, Patch, ReadyPatch};
+use super::fine::{Best, FineCounters, FineRay, Meeting, MicroHit, Patch, ReadyPatch};
 use super::flat::{FlatPoint, FlatPrism};
 use super::hit_lanes::points_all;
 use super::micro::MicroMesh;
@@ -67,18 +69,27 @@ pub enum Search {
     Any,
 }
 
-/// A ray, where it ends, and what it has met.
+/// A ray, where it ends, and what it has met. Small: a tile has a thousand.
 #[derive(Debug, Clone, Copy)]
 struct Asked {
     /// Whose ray it is.
-    place: usize,
-    best: Best,
+    place: u32,
+    /// Distance of the nearest micro-triangle; before the first, the end of the ray.
+    t: f32,
+    /// Which it is: its place in the list of those that were met, counted from 1.
+    micro: Option<NonZeroU32>,
     /// Whether a micro-triangle is in the way, where nobody asks which.
     blocked: bool,
     /// Piece whose flat relief was met, and the distance in doubles.
     flat: Option<(u32, f64)>,
     /// Steps of walks, and parts cut up or made.
     steps: u64,
+}
+
+/// Adds a micro-triangle to a list; its place there, counted from 1.
+fn listed(micros: &mut Vec<MicroHit>, hit: MicroHit) -> Option<NonZeroU32> {
+    micros.push(hit);
+    NonZeroU32::new(micros.len() as u32)
 }
 
 /// A walk over a flat relief, for one of the rays.
@@ -96,6 +107,8 @@ struct Job {
 #[derive(Debug, Default)]
 pub struct Tracer {
     asked: Vec<Asked>,
+    /// Micro-triangles that were met.
+    micros: Vec<MicroHit>,
     /// The rays asked for, and where they end.
     rays: Vec<Ray>,
     ends: Vec<f32>,
@@ -155,6 +168,7 @@ impl Tracer {
     /// Forgets all rays.
     pub fn clear(&mut self) {
         self.asked.clear();
+        self.micros.clear();
         self.rays.clear();
         self.ends.clear();
         self.spared = 0;
@@ -170,11 +184,9 @@ impl Tracer {
         self.rays.push(ray);
         self.ends.push(t_max);
         self.asked.push(Asked {
-            place,
-            best: Best {
-                t: t_max,
-                hit: None,
-            },
+            place: place as u32,
+            t: t_max,
+            micro: None,
             blocked: false,
             flat: None,
             steps: 0,
@@ -195,7 +207,8 @@ impl Tracer {
 
     /// The rays' places, and the steps that each took.
     pub fn steps_by_place(&self) -> impl Iterator<Item = (usize, u64)> {
-        self.asked.iter().map(|asked| (asked.place, asked.steps))
+        let of = |asked: &Asked| (asked.place as usize, asked.steps);
+        self.asked.iter().map(of)
     }
 
     /// Finds what all rays meet.
@@ -250,8 +263,8 @@ impl Tracer {
         let ends = &mut self.ends;
         ends.clear();
         ends.extend(self.asked.iter().map(|asked| {
-            let done = asked.blocked || (search == Search::Any && asked.best.hit.is_some());
-            if done { -1.0 } else { asked.best.t }
+            let done = asked.blocked || (search == Search::Any && asked.micro.is_some());
+            if done { -1.0 } else { asked.t }
         }));
         let mut jobs = Jobs {
             piece,
@@ -287,10 +300,8 @@ impl Tracer {
                 bvh.intersect_many::<Watertight, _>(&self.rays, &self.ends, &AcceptAll, hits);
                 for (asked, hit) in self.asked.iter_mut().zip(hits) {
                     if let Some(hit) = hit {
-                        asked.best = Best {
-                            t: hit.t,
-                            hit: Some(micro.micro(hit)),
-                        };
+                        asked.t = hit.t;
+                        asked.micro = listed(&mut self.micros, micro.micro(hit));
                     }
                 }
             }
@@ -327,7 +338,7 @@ impl Tracer {
                 let t = job.from + at;
                 let nearer = match asked.flat {
                     Some((piece, known)) => t < known || (t == known && job.piece < piece),
-                    None => (t as f32) < asked.best.t,
+                    None => (t as f32) < asked.t,
                 };
                 if nearer {
                     asked.flat = Some((job.piece, t));
@@ -340,7 +351,7 @@ impl Tracer {
     #[must_use]
     pub fn is_hit(&self, index: usize) -> bool {
         let asked = &self.asked[index];
-        asked.blocked || asked.flat.is_some() || asked.best.hit.is_some()
+        asked.blocked || asked.flat.is_some() || asked.micro.is_some()
     }
 
     /// What the ray in a place of the list met.
@@ -393,9 +404,9 @@ impl Hits<'_, '_, '_> {
             };
             return Some(prism.hit(mesh, t, point));
         }
-        let micro = asked.best.hit?;
+        let micro = self.tracer.micros[asked.micro?.get() as usize - 1];
         let patch = Patch::new(mesh, (&reliefs, displacement), micro.leaf.0)?;
-        Some(patch.hit(asked.best.t, &micro))
+        Some(patch.hit(asked.t, &micro))
     }
 }
 
@@ -461,6 +472,7 @@ impl Kernel for Visit<'_, '_, '_> {
             [None; 1 << PATCHES_LOG2];
         let Tracer {
             asked,
+            micros,
             rays,
             jobs,
             spared,
@@ -476,9 +488,13 @@ impl Kernel for Visit<'_, '_, '_> {
             if asked.blocked {
                 continue;
             }
+            let mut best = Best {
+                t: asked.t,
+                hit: None,
+            };
             let mut fine_ray = None;
             let mut boxes = displacement.tree.along(&ray);
-            while let Some(i) = boxes.next(asked.best.t) {
+            while let Some(i) = boxes.next(best.t) {
                 match displacement.pieces[i as usize].shape {
                     Shape::Flat | Shape::Sheet(_) if few => {}
                     Shape::Flat | Shape::Sheet(_) => {
@@ -488,7 +504,7 @@ impl Kernel for Visit<'_, '_, '_> {
                             *kept = prism.map(|prism| (i, prism));
                         }
                         let Some((_, prism)) = kept else { continue };
-                        if let Some((part, from)) = prism.clip(&ray, f64::from(asked.best.t)) {
+                        if let Some((part, from)) = prism.clip(&ray, f64::from(best.t)) {
                             let mut jobs = Jobs {
                                 piece: i,
                                 material: prism.material(mesh),
@@ -508,13 +524,17 @@ impl Kernel for Visit<'_, '_, '_> {
                             *kept = Patch::new(mesh, door, i).map(ReadyPatch::new);
                         }
                         if let Some(patch) = kept {
-                            asked.best = meeting.meet(simd, patch, ray, (asked.best, any));
+                            best = meeting.meet(simd, patch, ray, (best, any));
                         }
                     }
                 }
-                if any && asked.best.hit.is_some() {
+                if any && best.hit.is_some() {
                     break;
                 }
+            }
+            if let Some(hit) = best.hit {
+                asked.t = best.t;
+                asked.micro = listed(micros, hit);
             }
             let FineCounters { parts, leaves } = std::mem::take(&mut meeting.counters);
             asked.steps += parts + leaves;

@@ -145,7 +145,8 @@ fn search_ui(
     if method.searches() {
         ui.checkbox(&mut search.self_shadow, "Relief shadows itself")
             .on_hover_text(
-                "Every light is followed through the relief, exactly, by a pyramid of its extremes",
+                "Every light is followed through the relief, exactly, by a pyramid of its extremes; \
+                 light above the horizon of a place needs not be followed",
             );
     }
 }
@@ -177,11 +178,12 @@ fn displacement_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
         .normalization
         .world_length(seams.largest_gap);
     let mut said = format!("{flat} triangles walked as flat reliefs");
-    let sheets = displacement.sheets();
-    if sheets > 0 {
-        said += &format!(" (of one plane together: {sheets} such)");
-    }
-    said += &format!(", {fine} cut up where rays come");
+    said += &match displacement.sheets() {
+        0 => String::new(),
+        1 => ", one whole plane among them in one go".to_owned(),
+        sheets => format!(", {sheets} whole planes among them in one go each"),
+    };
+    said += &format!("; {fine} cut up where rays come");
     if seams.edges > 0 {
         said += &format!(
             "; {} seam edges, heights up to {gap:.2e} apart",

@@ -13,7 +13,7 @@ use reliefscope::surface::displaced::{
 };
 use reliefscope::surface::mapping::BoundHeight;
 use reliefscope::surface::mapping::relief::ReliefField;
-use reliefscope::texture::{Addressing, Grid, HeightMap, HeightPyramid, Wrap};
+use reliefscope::texture::{Addressing, Grid, HeightMap, HeightPyramid, HorizonMap, Wrap};
 
 use super::Random;
 
@@ -137,8 +137,9 @@ fn sheet([xs, ys]: [&[f32]; 2], turn: Quat, is_hole: impl Fn([usize; 2]) -> bool
 }
 
 /// Sheets, and how many of them are walked as one.
-fn sheets() -> [(&'static str, TriangleMesh, usize); 3] {
+fn sheets() -> [(&'static str, TriangleMesh, usize); 4] {
     let three = [-1.0, -0.2, 0.3, 1.0].as_slice();
+    let five = [-1.0, -0.7, -0.2, 0.3, 0.4, 1.0].as_slice();
     let turn = Quat::from_euler(EulerRot::XYZ, 0.4, -0.9, 2.0);
     let four = sheet([&[-1.0, 0.0, 1.0]; 2], Quat::IDENTITY, |_| false);
     [
@@ -147,6 +148,12 @@ fn sheets() -> [(&'static str, TriangleMesh, usize); 3] {
         (
             "pierced sheet",
             sheet([three; 2], turn, |quad| quad == [2, 2]),
+            0,
+        ),
+        // More triangles than are held against every ray.
+        (
+            "finely pierced sheet",
+            sheet([five; 2], turn, |quad| quad == [2, 3]),
             0,
         ),
     ]
@@ -328,8 +335,10 @@ fn with_relief(look: impl FnOnce(Reliefs<'_, '_>, &HeightMap)) {
     let map = map();
     let pyramid = HeightPyramid::new(&map, Wrap::Repeat);
     let height = BoundHeight::new(&map, addressing(), AMPLITUDE, -AMPLITUDE * MIDLEVEL);
+    let horizons = HorizonMap::new(&map, false);
+    let field = ReliefField::new(height, &pyramid);
     let reliefs = Reliefs {
-        fields: &[ReliefField::new(height, &pyramid)],
+        fields: &[field.map(|field| field.with_horizons(Some(&horizons)))],
         weld_seams: true,
     };
     look(reliefs, &map);
@@ -483,6 +492,66 @@ fn closed_displaced_surfaces_let_no_ray_out() {
     });
 }
 
+/// Rays that leave the points that others met are stopped at every level or at none, after as many walks.
+fn check_ways_out(
+    name: &str,
+    displaced: DisplacedMesh<'_, '_>,
+    (rays, met): (&[Ray], &[Option<SurfaceHit>]),
+) {
+    let mut random = Random::new(0x07);
+    let leaving: Vec<Ray> = met
+        .iter()
+        .flatten()
+        .map(|hit| {
+            let dir = any_ray(&mut random).dir;
+            let dir = dir * dir.dot(hit.normal).signum();
+            Ray::leaving((hit.p, hit.bound, hit.normal), dir)
+        })
+        .collect();
+    assert!(leaving.len() > rays.len() / 20, "{name}: {}", leaving.len());
+    let found = |level| {
+        let mut tracer = Tracer::default();
+        for ray in &leaving {
+            tracer.push(*ray, f32::INFINITY);
+        }
+        tracer.run(displaced, Search::Any, level);
+        let hits: Vec<bool> = (0..leaving.len()).map(|i| tracer.is_hit(i)).collect();
+        // How tight boxes of parts are is not the same at every level.
+        let [_, fine] = displaced.displacement.kinds();
+        let steps = if fine == 0 { tracer.steps() } else { 0 };
+        (hits, steps, tracer.walks_spared())
+    };
+    let plain = found(SimdLevel::Scalar);
+    if is_sheet(name) {
+        assert!(plain.2 > 0, "{name}: no horizon is low");
+    }
+    for level in SimdLevel::ALL.into_iter().filter(|l| l.is_available()) {
+        assert_eq!(found(level), plain, "{name}, {level}");
+    }
+    // Without horizons, the same are stopped.
+    let fields: Vec<_> = displaced
+        .reliefs
+        .fields
+        .iter()
+        .map(|field| field.map(|field| field.with_horizons(None)))
+        .collect();
+    let without = DisplacedMesh {
+        reliefs: Reliefs {
+            fields: &fields,
+            ..displaced.reliefs
+        },
+        ..displaced
+    };
+    let mut tracer = Tracer::default();
+    for ray in &leaving {
+        tracer.push(*ray, f32::INFINITY);
+    }
+    tracer.run(without, Search::Any, SimdLevel::best());
+    let hits: Vec<bool> = (0..leaving.len()).map(|i| tracer.is_hit(i)).collect();
+    assert_eq!(hits, plain.0, "{name}");
+    assert_eq!(tracer.walks_spared(), 0, "{name}");
+}
+
 #[test]
 fn every_level_meets_the_same_points() {
     for_each_displaced(|name, displaced, _| {
@@ -492,6 +561,7 @@ fn every_level_meets_the_same_points() {
         for level in SimdLevel::ALL.into_iter().filter(|l| l.is_available()) {
             assert_eq!(trace(displaced, &rays, level), plain, "{name}, {level}");
         }
+        check_ways_out(name, displaced, (&rays, &plain));
         // Rays alone, and asked for anything at all, agree.
         for (ray, hit) in rays.iter().zip(&plain) {
             assert_eq!(
