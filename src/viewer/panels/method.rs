@@ -177,20 +177,25 @@ fn displacement_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
         .scene
         .normalization
         .world_length(seams.largest_gap);
-    let mut said = format!("{flat} triangles walked as flat reliefs");
-    said += &match displacement.sheets() {
-        0 => String::new(),
-        1 => ", one whole plane among them in one go".to_owned(),
-        sheets => format!(", {sheets} whole planes among them in one go each"),
-    };
-    said += &format!("; {fine} cut up where rays come");
-    if seams.edges > 0 {
-        said += &format!(
-            "; {} seam edges, heights up to {gap:.2e} apart",
-            seams.edges
-        );
+    let mut said = Vec::new();
+    if flat > 0 {
+        said.push(match displacement.sheets() {
+            0 => format!("{flat} triangles walked as flat reliefs"),
+            1 => format!("{flat} triangles walked as flat reliefs, one plane of them as a whole"),
+            n => format!("{flat} triangles walked as flat reliefs, {n} planes of them as a whole"),
+        });
     }
-    ui.add(egui::Label::new(RichText::new(said).color(theme::WEAK)).wrap());
+    if fine > 0 {
+        said.push(format!("{fine} triangles cut up where rays come"));
+    }
+    if seams.edges > 0 {
+        said.push(format!(
+            "{} seam edges, heights up to {gap:.2e} apart",
+            seams.edges
+        ));
+    }
+    let said = RichText::new(said.join("; ")).color(theme::WEAK);
+    ui.add(egui::Label::new(said).wrap());
 }
 
 /// One amplitude for all, or each material its own default.
