@@ -104,10 +104,13 @@ impl<'a> Frame<'a> {
     #[must_use]
     pub fn new(snapshot: &'a Snapshot) -> Self {
         let (scene, settings) = (&*snapshot.scene, &*snapshot.settings);
+        let lights = frame_lights(snapshot);
+        let has_shadows = settings.shading.shadows && !lights.is_empty();
+        let (mapping, shading) = (&settings.mapping, &settings.shading);
         let materials: Vec<_> = settings
             .materials
             .iter()
-            .map(|m| FrameMaterial::new(m, scene, &settings.mapping, &settings.shading))
+            .map(|m| FrameMaterial::new(m, scene, (mapping, shading), has_shadows))
             .collect();
         if materials.iter().any(|m| m.mapping.needs_baked_frame()) {
             scene.tangents.get(&scene.mesh);
@@ -118,18 +121,13 @@ impl<'a> Frame<'a> {
             bvh: &scene.bvh,
             level: scene.bvh.level(),
             camera: FrameCamera::new(snapshot),
-            lights: frame_lights(snapshot),
+            lights,
             ambient: ambient(snapshot),
             has_cutouts: materials.iter().any(|m| m.opacity.is_some()),
             charts: (settings.mapping.cut_at_border
                 && materials.iter().any(|m| m.mapping.shifts()))
             .then(|| scene.uv_charts.get(&scene.mesh)),
-            displaced: FrameDisplacement::new(
-                scene,
-                &materials,
-                &settings.mapping,
-                settings.shading.shadows,
-            ),
+            displaced: FrameDisplacement::new(scene, &materials, mapping, has_shadows),
             materials,
             model: settings.shading.model,
             bent_normals: settings.shading.bent_normals,
@@ -263,7 +261,7 @@ impl<'a> FrameDisplacement<'a> {
         scene: &'a Scene,
         materials: &[FrameMaterial<'a>],
         mapping: &MappingSettings,
-        shadows: bool,
+        has_shadows: bool,
     ) -> Option<Self> {
         let weld_seams = mapping.weld_seams;
         let has_holes = |m: &FrameMaterial<'_>| m.relief.is_some() && m.opacity.is_some();
@@ -275,7 +273,7 @@ impl<'a> FrameDisplacement<'a> {
             };
             let displacement = scene.displaced.get(&scene.mesh, &reliefs);
             for (i, (field, material)) in fields.iter_mut().zip(materials).enumerate() {
-                if shadows && displacement.walks(i) {
+                if has_shadows && displacement.walks(i) {
                     *field = material.relief_with_horizons();
                 }
             }

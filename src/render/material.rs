@@ -113,13 +113,13 @@ pub struct FrameMaterial<'a> {
 }
 
 impl<'a> FrameMaterial<'a> {
-    /// Resolves one material.
+    /// Resolves one material. Where shadow rays are traced it gets what spares some of them.
     #[must_use]
     pub fn new(
         material: &Material,
         scene: &'a Scene,
-        mapping: &MappingSettings,
-        shading: &ShadingSettings,
+        (mapping, shading): (&MappingSettings, &ShadingSettings),
+        has_shadows: bool,
     ) -> Self {
         let filter = shading.filter;
         let is_glossy = material.ks.max_channel() > 0.0;
@@ -163,7 +163,7 @@ impl<'a> FrameMaterial<'a> {
                 .filter(|_| mapping.needs_pyramid() && internal_amplitude != 0.0)
                 .map(|s| heights(s).pyramid(s.wrap)),
             horizons: slot(MapRole::Height)
-                .filter(|_| mapping.shadows_itself() && shading.shadows)
+                .filter(|_| mapping.shadows_itself() && has_shadows)
                 .filter(|_| internal_amplitude != 0.0)
                 .and_then(horizons),
             cones: slot(MapRole::Height)

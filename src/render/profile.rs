@@ -146,8 +146,8 @@ pub fn profile(snapshot: &Snapshot, pixel: [u32; 2]) -> Result<ReliefProfile, No
         let material = FrameMaterial::new(
             &exact.settings.materials[index],
             &exact.scene,
-            &mapping,
-            &exact.settings.shading,
+            (&mapping, &exact.settings.shading),
+            false,
         );
         let mut s = cut.surface;
         material.place_baked_frame((frame.mesh, frame.tangents), &hit, &mut s);

@@ -119,7 +119,7 @@ pub struct Tracer {
     walks: Vec<Walk>,
     /// Rays that meet the flat relief of one piece, and where.
     met: Vec<(usize, f64)>,
-    /// Points on a few flat reliefs, by ray.
+    /// Points on flat reliefs, by ray, if these are few; else none.
     points: Vec<FlatPoint>,
     /// Walks that the horizon of their start spared.
     spared: u64,
@@ -225,6 +225,7 @@ impl Tracer {
         stop: &dyn Fn() -> bool,
     ) {
         self.jobs.clear();
+        self.points.clear();
         if let Some(micro) = mesh.micro {
             self.meet_all(micro, search);
         }
@@ -397,11 +398,8 @@ impl Hits<'_, '_, '_> {
                 self.prism = Some((piece, prism));
             }
             let (_, prism) = self.prism.as_mut()?;
-            let point = if displacement.few_flat().is_empty() {
-                prism.point(&self.tracer.rays[index], t)
-            } else {
-                self.tracer.points[index]
-            };
+            let known = self.tracer.points.get(index).copied();
+            let point = known.unwrap_or_else(|| prism.point(&self.tracer.rays[index], t));
             return Some(prism.hit(mesh, t, point));
         }
         let micro = self.tracer.micros[asked.micro?.get() as usize - 1];

@@ -68,9 +68,11 @@ fn what_a_horizon_spares_has_nothing_in_its_way() {
             for relief in [0.1_f32, 3.0, 40.0] {
                 let range = (highest - lowest).max(1e-3);
                 let scale = relief / range * if turned_over { -1.0 } else { 1.0 };
+                // Far from where texture coordinates are, too: what cancels out is rounded.
+                let shift = if relief == 3.0 { 3000.0 } else { 0.2 };
                 let addressing = Addressing {
                     scale: Vec2::new(1.5, -0.5),
-                    offset: Vec2::new(0.2, 3.0),
+                    offset: Vec2::new(shift, 3.0),
                     wrap: Wrap::Repeat,
                 };
                 let bound = BoundHeight::new(&height, addressing, scale, -scale * lowest);
@@ -79,7 +81,8 @@ fn what_a_horizon_spares_has_nothing_in_its_way() {
                     .with_horizons(Some(&horizons));
                 let mut spared = 0;
                 for _ in 0..RAYS {
-                    let uv = [0; 2].map(|_| random.between(-20.0, 20.0) as f32);
+                    let [u, v] = [0; 2].map(|_| random.between(-20.0, 20.0));
+                    let uv = [(u - f64::from(shift) / 1.5) as f32, v as f32];
                     // Half as steep as what lies in the way may be to twenty times.
                     let steep = f64::from(relief).max(1.0) * 10_f64.powf(random.between(-2.0, 1.0));
                     let (sin, cos) = random.between(0.0, std::f64::consts::TAU).sin_cos();
@@ -104,7 +107,10 @@ fn what_a_horizon_spares_has_nothing_in_its_way() {
                     }
                 }
                 let share = f64::from(spared) / f64::from(RAYS);
-                assert!(share >= least, "{name}, {relief}, {turned_over}: {share}");
+                assert!(
+                    share >= least || shift > 1.0,
+                    "{name}, {relief}, {turned_over}: {share}"
+                );
             }
         }
     }

@@ -9,16 +9,16 @@ const MARGIN: f32 = 0.01;
 /// From here on floats do not tell texels apart.
 const FAR: f32 = 2_097_152.0;
 
-/// From here on a place may be off by more than a block of a [`HorizonMap`](crate::texture::HorizonMap) forgives.
-const UNSURE: f32 = 65_536.0;
+/// Texels up to which a place is rounded by less than a block of a [`HorizonMap`](crate::texture::HorizonMap) forgives.
+const SURE: f32 = 65_536.0;
 
-/// The cell of a coordinate 0…1 across `count` texels of a picture that repeats, and whether that is sure to a hundredth
-/// of a texel; in each lane.
+/// The cell of the sum of two coordinates, 0…1 across `count` texels of a picture that repeats, and whether that is sure
+/// to a hundredth of a texel; in each lane.
 #[inline(always)]
-pub(super) fn sure_cell<F: Real>(place: F, count: f32) -> (F::Bits, F::Mask) {
-    let place = place * count - 0.5;
-    // No for NaN, too.
-    let sure = place.abs().lt(place.splat(UNSURE));
+pub(super) fn sure_cell<F: Real>(coordinate: F, offset: f32, count: f32) -> (F::Bits, F::Mask) {
+    // What cancels out was rounded all the same. No for NaN, too.
+    let sure = ((coordinate.abs() + offset.abs()) * count).lt(coordinate.splat(SURE));
+    let place = (coordinate + offset) * count - 0.5;
     let cell = F::select(sure, place, place.splat(0.0)).floor();
     (turned(cell, count).to_index(), sure)
 }

@@ -162,8 +162,8 @@ impl<'a> ReliefField<'a> {
         };
         let Addressing { scale, offset, .. } = self.height.addressing;
         let size = self.layout.size.map(|n| n as f32);
-        let x = sure_cell(uv.x * scale.x + offset.x, size[0]);
-        let y = sure_cell(uv.y * scale.y + offset.y, size[1]);
+        let x = sure_cell(uv.x * scale.x, offset.x, size[0]);
+        let y = sure_cell(uv.y * scale.y, offset.y, size[1]);
         let rate = V2::new(per_z.x * (scale.x * size[0]), per_z.y * (scale.y * size[1]));
         let slope = horizons.slope([x.0, y.0], rate);
         let [low, high] = self.range;
