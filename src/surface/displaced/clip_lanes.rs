@@ -15,18 +15,22 @@ pub trait Clipped {
     fn spare(&mut self, count: u32);
 }
 
-/// The parts of `rays` within a flat relief, each ray before its end, that must be walked; those that end before they
-/// start have none.
+/// The parts within a flat relief of those of `rays` whose numbers are in `which`, each ray before its end, that must be
+/// walked; those that end before they start have none.
 pub fn clip_all(
     level: SimdLevel,
     prism: &FlatPrism<'_, '_>,
     (rays, ends): (&[Ray], &[f32]),
+    which: &[u32],
     clipped: &mut impl Clipped,
 ) {
     if level == SimdLevel::Scalar {
-        for (i, (ray, &end)) in rays.iter().zip(ends).enumerate() {
-            if let Some((part, from)) = prism.clip(ray, f64::from(end)) {
-                put(prism, i, (part, from), clipped);
+        for &i in which {
+            let i = i as usize;
+            match prism.clip(&rays[i], f64::from(ends[i])) {
+                None => {}
+                Some((part, _)) if prism.field.is_clear_along(&part) => clipped.spare(1),
+                Some((part, from)) => clipped.take(i, part, from),
             }
         }
         return;
@@ -35,42 +39,27 @@ pub fn clip_all(
         prism,
         rays,
         ends,
+        which,
         clipped,
     });
-}
-
-/// Hands over the part of one ray, unless a horizon clears it.
-#[inline]
-pub fn put(
-    prism: &FlatPrism<'_, '_>,
-    index: usize,
-    (part, from): (ReliefRay, f64),
-    clipped: &mut impl Clipped,
-) {
-    if prism.field.is_clear_along(&part) {
-        clipped.spare(1);
-    } else {
-        clipped.take(index, part, from);
-    }
 }
 
 struct ClipAll<'a, C> {
     prism: &'a FlatPrism<'a, 'a>,
     rays: &'a [Ray],
     ends: &'a [f32],
+    which: &'a [u32],
     clipped: &'a mut C,
 }
 
 impl<C: Clipped> Kernel for ClipAll<'_, C> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let lanes = S::f64s::LEN;
         let prism = PrismLanes::<S>::new(simd, self.prism);
-        let lists = self.rays.chunks(lanes).zip(self.ends.chunks(lanes));
-        for (group, (rays, ends)) in lists.enumerate() {
+        for which in self.which.chunks(S::f64s::LEN) {
             let mut seeds = Seeds::NONE;
-            for (lane, (ray, &end)) in rays.iter().zip(ends).enumerate() {
-                seeds.put(lane, ray, end);
+            for (lane, &i) in which.iter().enumerate() {
+                seeds.put(lane, &self.rays[i as usize], self.ends[i as usize]);
             }
             let mut parts = prism.clip(simd, &seeds);
             self.clipped.spare(parts.clear.count_ones());
@@ -90,7 +79,7 @@ impl<C: Clipped> Kernel for ClipAll<'_, C> {
                     },
                 };
                 self.clipped
-                    .take(group * lanes + lane, part, parts.from[lane]);
+                    .take(which[lane] as usize, part, parts.from[lane]);
             }
         }
     }

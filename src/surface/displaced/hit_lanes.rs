@@ -5,17 +5,17 @@ use super::prism_lanes::{MAX_LANES, PrismLanes, Row, cross, dot, load, store};
 use crate::geometry::Ray;
 use crate::math::simd::{Kernel, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdLevel};
 
-/// The points that some of `rays` meet on a flat relief: `met` are their places in the list and the distances.
+/// The points that some of `rays` meet on a flat relief: `met` are their numbers and the distances.
 pub fn points_all(
     level: SimdLevel,
     prism: &FlatPrism<'_, '_>,
     rays: &[Ray],
-    met: &[(usize, f64)],
+    met: &[(u32, f64)],
     points: &mut [FlatPoint],
 ) {
     if level == SimdLevel::Scalar {
         for &(i, t) in met {
-            points[i] = prism.point(&rays[i], t);
+            points[i as usize] = prism.point(&rays[i as usize], t);
         }
         return;
     }
@@ -30,7 +30,7 @@ pub fn points_all(
 struct PointsAll<'a> {
     prism: &'a FlatPrism<'a, 'a>,
     rays: &'a [Ray],
-    met: &'a [(usize, f64)],
+    met: &'a [(u32, f64)],
     points: &'a mut [FlatPoint],
 }
 
@@ -45,16 +45,17 @@ impl Kernel for PointsAll<'_> {
                 t: [0.0; MAX_LANES],
             };
             for (lane, &(i, t)) in met.iter().enumerate() {
+                let ray = &self.rays[i as usize];
                 for k in 0..3 {
-                    seeds.origin[k][lane] = f64::from(self.rays[i].origin[k]);
-                    seeds.dir[k][lane] = f64::from(self.rays[i].dir[k]);
+                    seeds.origin[k][lane] = f64::from(ray.origin[k]);
+                    seeds.dir[k][lane] = f64::from(ray.dir[k]);
                 }
                 seeds.t[lane] = t;
             }
             let found = prism.points(simd, &seeds);
             for (lane, &(i, _)) in met.iter().enumerate() {
                 let of = |rows: &[Row; 3]| [rows[0][lane], rows[1][lane], rows[2][lane]].into();
-                self.points[i] = FlatPoint::new(
+                self.points[i as usize] = FlatPoint::new(
                     of(&found.p),
                     of(&found.rounding),
                     of(&found.normal),

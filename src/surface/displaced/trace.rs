@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use glam::Vec3;
 
 use super::charts::Shape;
-use super::clip_lanes::{Clipped, clip_all, put};
+use super::clip_lanes::{Clipped, clip_all};
 use super::fine::{Best, FineCounters, FineRay, Meeting, MicroHit, Patch, ReadyPatch};
 use super::flat::{FlatPoint, FlatPrism};
 use super::hit_lanes::points_all;
@@ -21,8 +21,7 @@ use crate::surface::mapping::relief::{ReliefRay, Walk};
 /// Rays that are traced without asking whether anybody wants them still: a few milliseconds, at the worst.
 const RAYS_BETWEEN_STOPS: usize = 16;
 
-/// Prisms of flat reliefs that are kept at hand, and pieces that are cut up.
-const PRISMS_LOG2: u32 = 4;
+/// Pieces that are cut up that are kept at hand.
 const PATCHES_LOG2: u32 = 7;
 
 /// Where the thing of a number is kept, of `2^log2` places: numbers that differ by powers of two, as those of neighbours
@@ -114,12 +113,16 @@ pub struct Tracer {
     ends: Vec<f32>,
     hits: Vec<Option<Hit>>,
     blocked: Vec<bool>,
+    /// Pieces that are walked, and rays that may meet them.
+    candidates: Vec<(u32, u32)>,
+    /// Those of one piece.
+    which: Vec<u32>,
     jobs: Vec<Job>,
     relief_rays: Vec<ReliefRay>,
     walks: Vec<Walk>,
     /// Rays that meet the flat relief of one piece, and where.
-    met: Vec<(usize, f64)>,
-    /// Points on flat reliefs, by ray, if these are few; else none.
+    met: Vec<(u32, f64)>,
+    /// Points on flat reliefs, by ray.
     points: Vec<FlatPoint>,
     /// Walks that the horizon of their start spared.
     spared: u64,
@@ -229,6 +232,7 @@ impl Tracer {
         if let Some(micro) = mesh.micro {
             self.meet_all(micro, search);
         }
+        self.candidates.clear();
         let few = mesh.displacement.few_flat();
         let [flat, fine] = mesh.displacement.kinds();
         if (mesh.micro.is_none() && fine > 0) || (few.is_empty() && flat > 0) {
@@ -239,55 +243,88 @@ impl Tracer {
                 stop,
             });
         }
+        let rays = 0..self.rays.len() as u32;
         for &piece in few {
-            if stop() {
-                return;
-            }
-            self.clip(mesh, piece, search, level);
+            self.candidates.extend(rays.clone().map(|ray| (piece, ray)));
         }
+        self.clip(mesh, search, level, stop);
         if stop() {
             return;
         }
         self.walk(mesh, level);
         if search == Search::Closest {
-            for &piece in few {
-                self.find_points(mesh, piece, level);
-            }
+            self.find_points(mesh, level, stop);
         }
     }
 
-    /// The parts of all rays within one of a few flat reliefs.
-    fn clip(&mut self, mesh: DisplacedMesh<'_, '_>, piece: u32, search: Search, level: SimdLevel) {
-        let Some(prism) = FlatPrism::new(mesh.mesh, &mesh.reliefs, mesh.displacement, piece) else {
-            return;
-        };
-        let ends = &mut self.ends;
-        ends.clear();
-        ends.extend(self.asked.iter().map(|asked| {
+    /// Lists the walks of all candidates.
+    fn clip(
+        &mut self,
+        mesh: DisplacedMesh<'_, '_>,
+        search: Search,
+        level: SimdLevel,
+        stop: &dyn Fn() -> bool,
+    ) {
+        self.ends.clear();
+        self.ends.extend(self.asked.iter().map(|asked| {
             let done = asked.blocked || (search == Search::Any && asked.micro.is_some());
             if done { -1.0 } else { asked.t }
         }));
-        let mut jobs = Jobs {
-            piece,
-            material: prism.material(mesh.mesh),
-            jobs: &mut self.jobs,
-            spared: &mut self.spared,
-        };
-        clip_all(level, &prism, (&self.rays, ends), &mut jobs);
+        self.for_each_piece(mesh, stop, |tracer, prism, piece, which| {
+            let mut jobs = Jobs {
+                piece,
+                material: prism.material(mesh.mesh),
+                jobs: &mut tracer.jobs,
+                spared: &mut tracer.spared,
+            };
+            clip_all(level, prism, (&tracer.rays, &tracer.ends), which, &mut jobs);
+        });
     }
 
-    /// The points that rays meet on one of a few flat reliefs.
-    fn find_points(&mut self, mesh: DisplacedMesh<'_, '_>, piece: u32, level: SimdLevel) {
-        let met = self.asked.iter().enumerate().filter_map(|(i, asked)| {
-            let (_, t) = asked.flat.filter(|(met, _)| *met == piece)?;
-            Some((i, t))
-        });
-        self.met.clear();
-        self.met.extend(met);
+    /// The points that rays meet on flat reliefs.
+    fn find_points(
+        &mut self,
+        mesh: DisplacedMesh<'_, '_>,
+        level: SimdLevel,
+        stop: &dyn Fn() -> bool,
+    ) {
+        let met = |(asked, ray): (&Asked, u32)| asked.flat.map(|(piece, _)| (piece, ray));
+        self.candidates.clear();
+        self.candidates
+            .extend(self.asked.iter().zip(0..).filter_map(met));
         self.points.resize(self.asked.len(), FlatPoint::NONE);
-        if let Some(prism) = FlatPrism::new(mesh.mesh, &mesh.reliefs, mesh.displacement, piece) {
-            points_all(level, &prism, &self.rays, &self.met, &mut self.points);
+        self.for_each_piece(mesh, stop, |tracer, prism, _, which| {
+            let asked = &tracer.asked;
+            let t = |ray: u32| asked[ray as usize].flat.map_or(0.0, |(_, t)| t);
+            tracer.met.clear();
+            tracer.met.extend(which.iter().map(|&ray| (ray, t(ray))));
+            points_all(level, prism, &tracer.rays, &tracer.met, &mut tracer.points);
+        });
+    }
+
+    /// Calls `hold` with each piece that there are candidates for and with the numbers of their rays.
+    fn for_each_piece(
+        &mut self,
+        mesh: DisplacedMesh<'_, '_>,
+        stop: &dyn Fn() -> bool,
+        hold: impl Fn(&mut Self, &FlatPrism<'_, '_>, u32, &[u32]),
+    ) {
+        let mut candidates = std::mem::take(&mut self.candidates);
+        let mut which = std::mem::take(&mut self.which);
+        candidates.sort_unstable();
+        for run in candidates.chunk_by(|a, b| a.0 == b.0) {
+            if stop() {
+                break;
+            }
+            let (piece, _) = run[0];
+            which.clear();
+            which.extend(run.iter().map(|&(_, ray)| ray));
+            let prism = FlatPrism::new(mesh.mesh, &mesh.reliefs, mesh.displacement, piece);
+            if let Some(prism) = prism {
+                hold(self, &prism, piece, &which);
+            }
         }
+        (self.candidates, self.which) = (candidates, which);
     }
 
     /// What the rays meet of micro-triangles that are all there.
@@ -398,9 +435,8 @@ impl Hits<'_, '_, '_> {
                 self.prism = Some((piece, prism));
             }
             let (_, prism) = self.prism.as_mut()?;
-            let known = self.tracer.points.get(index).copied();
-            let point = known.unwrap_or_else(|| prism.point(&self.tracer.rays[index], t));
-            return Some(prism.hit(mesh, t, point));
+            let point = self.tracer.points.get(index)?;
+            return Some(prism.hit(mesh, t, *point));
         }
         let micro = self.tracer.micros[asked.micro?.get() as usize - 1];
         let patch = Patch::new(mesh, (&reliefs, displacement), micro.leaf.0)?;
@@ -464,16 +500,13 @@ impl Kernel for Visit<'_, '_, '_> {
             micro,
         } = self.mesh;
         // Rays nearby meet the same few triangles by turns.
-        let mut prisms: [Option<(u32, FlatPrism<'_, '_>)>; 1 << PRISMS_LOG2] =
-            [None; 1 << PRISMS_LOG2];
         let mut patches: [Option<ReadyPatch<'_, '_>>; 1 << PATCHES_LOG2] =
             [None; 1 << PATCHES_LOG2];
         let Tracer {
             asked,
             micros,
             rays,
-            jobs,
-            spared,
+            candidates,
             ..
         } = self.tracer;
         let door = (&reliefs, displacement);
@@ -495,23 +528,7 @@ impl Kernel for Visit<'_, '_, '_> {
             while let Some(i) = boxes.next(best.t) {
                 match displacement.pieces[i as usize].shape {
                     Shape::Flat | Shape::Sheet(_) if few => {}
-                    Shape::Flat | Shape::Sheet(_) => {
-                        let kept = &mut prisms[kept_at(i, PRISMS_LOG2)];
-                        if kept.is_none_or(|(known, _)| known != i) {
-                            let prism = FlatPrism::new(mesh, &reliefs, displacement, i);
-                            *kept = prism.map(|prism| (i, prism));
-                        }
-                        let Some((_, prism)) = kept else { continue };
-                        if let Some((part, from)) = prism.clip(&ray, f64::from(best.t)) {
-                            let mut jobs = Jobs {
-                                piece: i,
-                                material: prism.material(mesh),
-                                jobs,
-                                spared,
-                            };
-                            put(prism, index, (part, from), &mut jobs);
-                        }
-                    }
+                    Shape::Flat | Shape::Sheet(_) => candidates.push((i, index as u32)),
                     // Met already.
                     Shape::Fine(_) if micro.is_some() => {}
                     Shape::Fine(_) => {
