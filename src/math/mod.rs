@@ -11,6 +11,7 @@ pub mod lanes;
 mod normalize;
 mod power;
 mod real;
+pub(crate) mod rows;
 pub mod simd;
 mod vector;
 pub(crate) mod wide;

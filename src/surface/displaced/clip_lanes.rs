@@ -1,8 +1,9 @@
 //! [`FlatPrism::clip`] for many rays, one in each vector lane: the same bits.
 
 use super::flat::{FlatPrism, OVERLAP, ROUNDING};
-use super::prism_lanes::{MAX_LANES, PrismLanes, Row, dot, load, store};
+use super::prism_lanes::{PrismLanes, dot};
 use crate::geometry::Ray;
+use crate::math::rows::{MAX_LANES, Row, load, store};
 use crate::math::simd::{Kernel, Select as _, Simd, SimdBase as _, SimdLevel, SimdMask as _};
 use crate::surface::mapping::relief::{ReliefRay, Side};
 

@@ -1,8 +1,9 @@
 //! [`FlatPrism::point`] for many rays, one in each vector lane: the same bits.
 
 use super::flat::{FlatPoint, FlatPrism, ROUNDING};
-use super::prism_lanes::{MAX_LANES, PrismLanes, Row, cross, dot, load, store};
+use super::prism_lanes::{PrismLanes, cross, dot};
 use crate::geometry::Ray;
+use crate::math::rows::{MAX_LANES, Row, load, store};
 use crate::math::simd::{Kernel, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdLevel};
 
 /// The points that some of `rays` meet on a flat relief: `met` are their numbers and the distances.

@@ -9,17 +9,12 @@ use super::lane_axis::LaneAxis;
 use super::parabola::{first_not_above, is_not_above};
 use super::walk::{ReliefRay, STEP_CAP, Typed, Walk};
 use crate::math::fetch::{WHOLE, wide_pairs};
+use crate::math::rows::{MAX_LANES, Row, load, store};
 use crate::math::simd::{
     Bytes as _, ExtractToken as _, Kernel, Select as _, Simd, SimdBase as _, SimdFloat as _,
     SimdLevel, SimdMask as _, merged,
 };
 use crate::texture::Wrap;
-
-/// Most doubles that a vector of any machine has.
-const MAX_LANES: usize = 8;
-
-/// A double for each lane, in memory.
-type Row = [f64; MAX_LANES];
 
 /// Numbers that heights are stored in.
 pub(super) trait Stored: Copy + PartialOrd + Into<f64> {
@@ -359,18 +354,6 @@ struct Results<S: Simd> {
     tau: S::f64s,
     parabola: [S::f64s; 3],
     len: S::f64s,
-}
-
-#[inline(always)]
-fn load<S: Simd>(simd: S, row: &Row) -> S::f64s {
-    S::f64s::from_slice(simd, &row[..S::f64s::LEN])
-}
-
-#[inline(always)]
-fn store<S: Simd>(x: S::f64s) -> Row {
-    let mut row = [0.0; MAX_LANES];
-    x.store_slice(&mut row[..S::f64s::LEN]);
-    row
 }
 
 impl<S: Simd> Lanes<S> {
