@@ -134,6 +134,7 @@ impl<'a> FrameMaterial<'a> {
                 .map(role)
                 .filter(|slot| slot.image < scene.images.len())
         };
+        let moving = slot(MapRole::Height).filter(|_| internal_amplitude != 0.0);
         let heights = |s: &MapSlot| scene.images[s.image].heights_of(s);
         let is_turned_over = |s: &MapSlot| internal_amplitude * s.gain_and_bias().0 < 0.0;
         let horizons = |s: &MapSlot| heights(s).horizons(s.wrap, is_turned_over(s));
@@ -159,15 +160,14 @@ impl<'a> FrameMaterial<'a> {
                 });
                 slope
             }),
-            pyramid: slot(MapRole::Height)
-                .filter(|_| mapping.needs_pyramid() && internal_amplitude != 0.0)
+            pyramid: moving
+                .filter(|_| mapping.needs_pyramid())
                 .map(|s| heights(s).pyramid(s.wrap)),
-            horizons: slot(MapRole::Height)
+            horizons: moving
                 .filter(|_| mapping.shadows_itself() && has_shadows)
-                .filter(|_| internal_amplitude != 0.0)
                 .and_then(horizons),
-            cones: slot(MapRole::Height)
-                .filter(|_| mapping.needs_cones() && internal_amplitude != 0.0)
+            cones: moving
+                .filter(|_| mapping.needs_cones())
                 .map(|s| heights(s).cones(s.wrap, is_turned_over(s))),
         };
         let relief = displaced(mapping, &maps);

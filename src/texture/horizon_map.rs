@@ -23,6 +23,9 @@ const FINE: i32 = 8;
 /// As many texels away every horizon ends; what is farther may be as high as the highest texel.
 const REACH: i32 = 128;
 
+/// Blocks around the map that its blocks see.
+const PAD: usize = (REACH / BLOCK) as usize + 1;
+
 /// Texels that a place may be off by and still belong to a block.
 const MARGIN: f32 = 1.0 / 64.0;
 
@@ -194,8 +197,7 @@ impl Square {
 /// Largest heights over squares of one size, wherever they begin at whole blocks.
 struct Level {
     squares: Vec<Square>,
-    /// Blocks before the first.
-    pad: usize,
+    /// Numbers in a row, which begins [`PAD`] blocks before the first of the map.
     row: usize,
     highest: Vec<f32>,
 }
@@ -259,11 +261,10 @@ impl Heights {
 
     /// What blocks see from [`FINE`] cells on.
     fn levels(&self, count: [usize; 2]) -> Vec<Level> {
-        let pad = ((REACH + BLOCK) / BLOCK) as usize;
         // As many blocks beyond the last, and the width of the widest square.
-        let [w, h] = count.map(|n| n + 3 * pad);
-        let start = -(pad as i32) * BLOCK;
-        let mut highest: Vec<f32> = (0..h as i32)
+        let [w, h] = count.map(|n| n + 3 * PAD);
+        let start = -(PAD as i32) * BLOCK;
+        let blocks: Vec<f32> = (0..h as i32)
             .into_par_iter()
             .flat_map_iter(|j| {
                 let y = start + j * BLOCK;
@@ -275,18 +276,18 @@ impl Heights {
                 blocks.collect::<Vec<_>>()
             })
             .collect();
-        let mut levels = Vec::new();
+        let level = |side: i32, reach: i32, highest| Level {
+            squares: Square::around(side, (-reach, BLOCK + reach), 2 * reach),
+            row: w,
+            highest,
+        };
         let (mut side, mut reach) = (BLOCK, FINE);
-        while reach < REACH {
-            levels.push(Level {
-                squares: Square::around(side, (-reach, BLOCK + reach), 2 * reach),
-                pad,
-                row: w,
-                highest: highest.clone(),
-            });
-            let half = (side / BLOCK) as usize;
-            highest = widened(&highest, [w, h], half);
+        let mut levels = vec![level(side, reach, blocks)];
+        while 2 * reach < REACH {
+            let finer = &levels[levels.len() - 1].highest;
+            let highest = widened(finer, [w, h], (side / BLOCK) as usize);
             (side, reach) = (2 * side, 2 * reach);
+            levels.push(level(side, reach, highest));
         }
         levels
     }
@@ -316,7 +317,7 @@ impl Heights {
         }
         for level in levels {
             for square in &level.squares {
-                let [x, y] = square.at.map(|at| at / BLOCK + level.pad as i32);
+                let [x, y] = square.at.map(|at| at / BLOCK + PAD as i32);
                 let from = (row + y as usize) * level.row + x as usize;
                 raise(&mut slopes, &level.highest[from..], &lows, square);
             }

@@ -1,20 +1,12 @@
 //! [`FlatPrism::clip`] for many rays, one in each vector lane: the same bits.
 
 use super::flat::{FlatPrism, OVERLAP, ROUNDING};
-use super::prism_lanes::{PrismLanes, dot};
+use super::prism_lanes::{PrismLanes, RayRows, dot};
+use super::trace::Jobs;
 use crate::geometry::Ray;
 use crate::math::rows::{MAX_LANES, Row, load, store};
 use crate::math::simd::{Kernel, Select as _, Simd, SimdBase as _, SimdLevel, SimdMask as _};
 use crate::surface::mapping::relief::{ReliefRay, Side};
-
-/// Takes the parts of rays within a relief.
-pub trait Clipped {
-    /// The part of the ray in a place of the list, and the distance at which it begins.
-    fn take(&mut self, index: usize, part: ReliefRay, from: f64);
-
-    /// So many rays have such a part, but horizons tell that nothing lies in its way.
-    fn spare(&mut self, count: u32);
-}
 
 /// The parts within a flat relief of those of `rays` whose numbers are in `which`, each ray before its end, that must be
 /// walked; those that end before they start have none.
@@ -23,15 +15,15 @@ pub fn clip_all(
     prism: &FlatPrism<'_, '_>,
     (rays, ends): (&[Ray], &[f32]),
     which: &[u32],
-    clipped: &mut impl Clipped,
+    jobs: &mut Jobs<'_>,
 ) {
     if level == SimdLevel::Scalar {
         for &i in which {
             let i = i as usize;
             match prism.clip(&rays[i], f64::from(ends[i])) {
                 None => {}
-                Some((part, _)) if prism.field.is_clear_along(&part) => clipped.spare(1),
-                Some((part, from)) => clipped.take(i, part, from),
+                Some((part, _)) if prism.field.is_clear_along(&part) => jobs.spare(1),
+                Some((part, from)) => jobs.take(i, part, from),
             }
         }
         return;
@@ -41,29 +33,30 @@ pub fn clip_all(
         rays,
         ends,
         which,
-        clipped,
+        jobs,
     });
 }
 
-struct ClipAll<'a, C> {
+struct ClipAll<'a, 'j> {
     prism: &'a FlatPrism<'a, 'a>,
     rays: &'a [Ray],
     ends: &'a [f32],
     which: &'a [u32],
-    clipped: &'a mut C,
+    jobs: &'a mut Jobs<'j>,
 }
 
-impl<C: Clipped> Kernel for ClipAll<'_, C> {
+impl Kernel for ClipAll<'_, '_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let prism = PrismLanes::<S>::new(simd, self.prism);
         for which in self.which.chunks(S::f64s::LEN) {
-            let mut seeds = Seeds::NONE;
+            let mut rays = RayRows::NONE;
             for (lane, &i) in which.iter().enumerate() {
-                seeds.put(lane, &self.rays[i as usize], self.ends[i as usize]);
+                let i = i as usize;
+                rays.put(lane, &self.rays[i], f64::from(self.ends[i]));
             }
-            let mut parts = prism.clip(simd, &seeds);
-            self.clipped.spare(parts.clear.count_ones());
+            let mut parts = prism.clip(simd, &rays);
+            self.jobs.spare(parts.clear.count_ones());
             while parts.within != 0 {
                 let lane = parts.within.trailing_zeros() as usize % MAX_LANES;
                 parts.within &= parts.within - 1;
@@ -79,34 +72,9 @@ impl<C: Clipped> Kernel for ClipAll<'_, C> {
                         Side::Below
                     },
                 };
-                self.clipped
-                    .take(which[lane] as usize, part, parts.from[lane]);
+                self.jobs.take(which[lane] as usize, part, parts.from[lane]);
             }
         }
-    }
-}
-
-/// Rays for lanes to take on.
-struct Seeds {
-    origin: [Row; 3],
-    dir: [Row; 3],
-    end: Row,
-}
-
-impl Seeds {
-    const NONE: Self = Self {
-        origin: [[0.0; MAX_LANES]; 3],
-        dir: [[0.0; MAX_LANES]; 3],
-        end: [-1.0; MAX_LANES],
-    };
-
-    #[inline(always)]
-    fn put(&mut self, lane: usize, ray: &Ray, end: f32) {
-        for k in 0..3 {
-            self.origin[k][lane] = f64::from(ray.origin[k]);
-            self.dir[k][lane] = f64::from(ray.dir[k]);
-        }
-        self.end[lane] = f64::from(end);
     }
 }
 
@@ -129,12 +97,9 @@ struct Parts {
 impl<S: Simd> PrismLanes<'_, S> {
     /// Every operation of [`FlatPrism::clip`].
     #[inline(always)]
-    fn clip(&self, simd: S, seeds: &Seeds) -> Parts {
+    fn clip(&self, simd: S, rays: &RayRows) -> Parts {
         let zero = S::f64s::splat(simd, 0.0);
-        let [x, y, z] = &seeds.origin;
-        let way = self.way_to([load(simd, x), load(simd, y), load(simd, z)]);
-        let [x, y, z] = &seeds.dir;
-        let dir = [load(simd, x), load(simd, y), load(simd, z)];
+        let (way, dir) = (self.way_to(rays.origin(simd)), rays.dir(simd));
         let rounding = {
             let ([x, y, z], [rx, ry, rz]) = (way, self.rows[2]);
             dot::<S>([rx.abs(), ry.abs(), rz.abs()], [x.abs(), y.abs(), z.abs()]) * ROUNDING
@@ -155,7 +120,7 @@ impl<S: Simd> PrismLanes<'_, S> {
         let margin = rounding + flat_margin;
         let mut cut = Cut::<S> {
             from: zero,
-            to: load(simd, &seeds.end),
+            to: load(simd, &rays.end),
             within: zero.simd_eq(zero),
         };
         for side in self.prism.sides {
@@ -163,7 +128,7 @@ impl<S: Simd> PrismLanes<'_, S> {
             let value = b1 * x + (side.at + OVERLAP) + b2 * y;
             cut.at(simd, value, r1 * x + r2 * y);
         }
-        cut.at(simd, (margin + high) - z, zero - rz);
+        cut.at(simd, (margin + high) - z, -rz);
         cut.at(simd, z - low + margin, rz);
         let Cut { from, to, within } = cut;
         let within = within & from.simd_le(to) & to.simd_lt(f64::INFINITY);
@@ -206,7 +171,7 @@ impl<S: Simd> Cut<S> {
     #[inline(always)]
     fn at(&mut self, simd: S, value: S::f64s, rate: S::f64s) {
         let zero = S::f64s::splat(simd, 0.0);
-        let at = (zero - value) / rate;
+        let at = -value / rate;
         let (grows, shrinks) = (rate.simd_gt(zero), rate.simd_lt(zero));
         self.from = (grows & at.simd_gt(self.from)).select(at, self.from);
         self.to = (shrinks & at.simd_lt(self.to)).select(at, self.to);

@@ -154,15 +154,15 @@ impl<'a, 'm> FlatPrism<'a, 'm> {
         let [low, high] = self.field.range();
         // And more than the displacement of a place is rounded by: a relief without any would be passed.
         let rounding = self.axes.rounding(o);
-        let margin = rounding + ((high - low) * 1e-6 + (high.abs() + low.abs()) * 1e-12);
+        let margin = (high - low) * 1e-6 + (high.abs() + low.abs()) * 1e-12 + rounding;
         let sides = self.sides.iter().map(|side| {
             let [x, y] = side.ways;
-            (b1 * x + (side.at + OVERLAP) + b2 * y, r1 * x + r2 * y)
+            (side.at + OVERLAP + x * b1 + y * b2, x * r1 + y * r2)
         });
-        let ends = [(margin + high - z, 0.0 - rz), (z - low + margin, rz)];
+        let ends = [(high + margin - z, -rz), (z - low + margin, rz)];
         let (mut from, mut to) = (0.0_f64, t_max);
         for (value, rate) in sides.chain(ends) {
-            let at = (0.0 - value) / rate;
+            let at = -value / rate;
             if rate > 0.0 {
                 from = from.max(at);
             } else if rate < 0.0 {
@@ -214,7 +214,7 @@ impl<'a, 'm> FlatPrism<'a, 'm> {
         let weights = match self.sheet {
             None => point.place,
             Some(sheet) => {
-                let near = self.near.filter(|near| near.prim() == self.prim);
+                let near = self.near;
                 let near = near.unwrap_or_else(|| sheet.triangle(mesh, self.prim));
                 let (found, weights) = sheet.triangle_at(mesh, point.place, near);
                 self.prim = found.prim();

@@ -1,9 +1,9 @@
 //! [`FlatPrism::point`] for many rays, one in each vector lane: the same bits.
 
 use super::flat::{FlatPoint, FlatPrism, ROUNDING};
-use super::prism_lanes::{PrismLanes, cross, dot};
+use super::prism_lanes::{PrismLanes, RayRows, cross, dot};
 use crate::geometry::Ray;
-use crate::math::rows::{MAX_LANES, Row, load, store};
+use crate::math::rows::{Row, load, store};
 use crate::math::simd::{Kernel, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdLevel};
 
 /// The points that some of `rays` meet on a flat relief: `met` are their numbers and the distances.
@@ -40,20 +40,11 @@ impl Kernel for PointsAll<'_> {
     fn run<S: Simd>(self, simd: S) {
         let prism = PrismLanes::<S>::new(simd, self.prism);
         for met in self.met.chunks(S::f64s::LEN) {
-            let mut seeds = Seeds {
-                origin: [[0.0; MAX_LANES]; 3],
-                dir: [[0.0; MAX_LANES]; 3],
-                t: [0.0; MAX_LANES],
-            };
+            let mut rays = RayRows::NONE;
             for (lane, &(i, t)) in met.iter().enumerate() {
-                let ray = &self.rays[i as usize];
-                for k in 0..3 {
-                    seeds.origin[k][lane] = f64::from(ray.origin[k]);
-                    seeds.dir[k][lane] = f64::from(ray.dir[k]);
-                }
-                seeds.t[lane] = t;
+                rays.put(lane, &self.rays[i as usize], t);
             }
-            let found = prism.points(simd, &seeds);
+            let found = prism.points(simd, &rays);
             for (lane, &(i, _)) in met.iter().enumerate() {
                 let of = |rows: &[Row; 3]| [rows[0][lane], rows[1][lane], rows[2][lane]].into();
                 self.points[i as usize] = FlatPoint::new(
@@ -67,13 +58,6 @@ impl Kernel for PointsAll<'_> {
     }
 }
 
-/// Rays for lanes to take on, and where they end.
-struct Seeds {
-    origin: [Row; 3],
-    dir: [Row; 3],
-    t: Row,
-}
-
 /// What was found in each lane.
 struct Points {
     p: [Row; 3],
@@ -85,12 +69,10 @@ struct Points {
 impl<S: Simd> PrismLanes<'_, S> {
     /// Every operation of [`FlatPrism::point`].
     #[inline(always)]
-    fn points(&self, simd: S, seeds: &Seeds) -> Points {
-        let t = load(simd, &seeds.t);
-        let [x, y, z] = &seeds.origin;
-        let o = [load(simd, x), load(simd, y), load(simd, z)];
-        let [x, y, z] = &seeds.dir;
-        let way: [S::f64s; 3] = [load(simd, x) * t, load(simd, y) * t, load(simd, z) * t];
+    fn points(&self, simd: S, rays: &RayRows) -> Points {
+        let t = load(simd, &rays.end);
+        let (o, [x, y, z]) = (rays.origin(simd), rays.dir(simd));
+        let way: [S::f64s; 3] = [x * t, y * t, z * t];
         let p = [o[0] + way[0], o[1] + way[1], o[2] + way[2]];
         let rounding = [
             (o[0].abs() + way[0].abs()) * ROUNDING,

@@ -1,7 +1,46 @@
 //! A flat prism for kernels that hold many rays against it.
 
 use super::flat::FlatPrism;
+use crate::geometry::Ray;
+use crate::math::rows::{MAX_LANES, Row, load};
 use crate::math::simd::{Simd, SimdBase as _};
+
+/// Rays for lanes to take on, and where they end.
+pub struct RayRows {
+    origin: [Row; 3],
+    dir: [Row; 3],
+    pub end: Row,
+}
+
+impl RayRows {
+    /// Rays that end before they start.
+    pub const NONE: Self = Self {
+        origin: [[0.0; MAX_LANES]; 3],
+        dir: [[0.0; MAX_LANES]; 3],
+        end: [-1.0; MAX_LANES],
+    };
+
+    #[inline(always)]
+    pub fn put(&mut self, lane: usize, ray: &Ray, end: f64) {
+        for k in 0..3 {
+            self.origin[k][lane] = f64::from(ray.origin[k]);
+            self.dir[k][lane] = f64::from(ray.dir[k]);
+        }
+        self.end[lane] = end;
+    }
+
+    #[inline(always)]
+    pub fn origin<S: Simd>(&self, simd: S) -> [S::f64s; 3] {
+        let [x, y, z] = &self.origin;
+        [load(simd, x), load(simd, y), load(simd, z)]
+    }
+
+    #[inline(always)]
+    pub fn dir<S: Simd>(&self, simd: S) -> [S::f64s; 3] {
+        let [x, y, z] = &self.dir;
+        [load(simd, x), load(simd, y), load(simd, z)]
+    }
+}
 
 /// The numbers of a prism, each in all lanes.
 pub struct PrismLanes<'a, S: Simd> {

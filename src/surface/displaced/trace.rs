@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use glam::Vec3;
 
 use super::charts::Shape;
-use super::clip_lanes::{Clipped, clip_all};
+use super::clip_lanes::clip_all;
 use super::fine::{Best, FineCounters, FineRay, Meeting, MicroHit, Patch, ReadyPatch};
 use super::flat::{FlatPoint, FlatPrism};
 use super::hit_lanes::points_all;
@@ -457,16 +457,17 @@ impl Iterator for Hits<'_, '_, '_> {
 }
 
 /// Where walks over a flat relief are listed.
-struct Jobs<'a> {
+pub struct Jobs<'a> {
     piece: u32,
     material: u16,
     jobs: &'a mut Vec<Job>,
     spared: &'a mut u64,
 }
 
-impl Clipped for Jobs<'_> {
+impl Jobs<'_> {
+    /// The part of a ray within the relief, and the distance at which it begins.
     #[inline(always)]
-    fn take(&mut self, index: usize, part: ReliefRay, from: f64) {
+    pub fn take(&mut self, index: usize, part: ReliefRay, from: f64) {
         self.jobs.push(Job {
             asked: index,
             piece: self.piece,
@@ -476,8 +477,9 @@ impl Clipped for Jobs<'_> {
         });
     }
 
+    /// So many rays have such a part, but horizons tell that nothing lies in its way.
     #[inline(always)]
-    fn spare(&mut self, count: u32) {
+    pub fn spare(&mut self, count: u32) {
         *self.spared += u64::from(count);
     }
 }
@@ -499,7 +501,7 @@ impl Kernel for Visit<'_, '_, '_> {
             displacement,
             micro,
         } = self.mesh;
-        // Rays nearby meet the same few triangles by turns.
+        // Rays nearby meet the same few pieces by turns.
         let mut patches: [Option<ReadyPatch<'_, '_>>; 1 << PATCHES_LOG2] =
             [None; 1 << PATCHES_LOG2];
         let Tracer {

@@ -16,25 +16,14 @@ struct Patches<S: Simd> {
 impl<S: Simd> Patches<S> {
     /// Around places of a map that repeats.
     #[inline(always)]
-    fn around<T: Stored>(
-        simd: S,
-        relief: &LaneRelief<'_, S, T>,
-        (factor, offset): (f64, f64),
-        [x, y]: [S::f64s; 2],
-    ) -> Self {
+    fn around<T: Stored>(simd: S, relief: &LaneRelief<'_, S, T>, [x, y]: [S::f64s; 2]) -> Self {
         let (x, y) = (
             LaneAxis::at_rest(simd, relief.n[0], x),
             LaneAxis::at_rest(simd, relief.n[1], y),
         );
         let (zero, one) = (S::f64s::splat(simd, 0.0), S::f64s::splat(simd, 1.0));
-        let [a, b, c, d] = relief.fours(simd, one, [x.cell(), y.cell()]);
         Self {
-            corners: [
-                a * factor + offset,
-                b * factor + offset,
-                c * factor + offset,
-                d * factor + offset,
-            ],
+            corners: relief.displacements(simd, one, [x.cell(), y.cell()]),
             fx: x.fraction(zero),
             fy: y.fraction(zero),
         }
@@ -48,15 +37,14 @@ impl ReliefField<'_> {
         if self.height.addressing.wrap != Wrap::Repeat {
             return None;
         }
-        let displaced = self.factor_and_offset();
         Some(match self.stored {
             StoredHeights::U16(all) => {
                 let relief = LaneRelief::new(simd, &self.with(all));
-                Patches::around(simd, &relief, displaced, places)
+                Patches::around(simd, &relief, places)
             }
             StoredHeights::F32(all) => {
                 let relief = LaneRelief::new(simd, &self.with(all));
-                Patches::around(simd, &relief, displaced, places)
+                Patches::around(simd, &relief, places)
             }
         })
     }

@@ -191,11 +191,6 @@ impl<'a> ReliefField<'a> {
         needed * (high - low) <= ray.z_rate
     }
 
-    /// What displacements are made of stored numbers by.
-    pub(super) const fn factor_and_offset(&self) -> (f64, f64) {
-        (self.factor, self.offset)
-    }
-
     /// Smallest and largest displacement of the whole map.
     #[must_use]
     pub const fn range(&self) -> [f64; 2] {
@@ -639,6 +634,7 @@ fn larger(a: f64, b: f64) -> f64 {
 /// descended, for nothing.
 #[inline(always)]
 fn start_level(ray: &ReliefRay, top: u32) -> u32 {
+    // Close to the relief that it leaves, a ray passes no square of more than one cell.
     if ray.z_rate * ray.side.sign() > 0.0 {
         return 0;
     }

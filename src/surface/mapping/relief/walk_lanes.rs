@@ -313,7 +313,7 @@ impl<'a, S: Simd, T: Stored> LaneRelief<'a, S, T> {
     /// Displacements at the corners of cells, or the extremes of coarser squares, as they are stored: see
     /// [`Layout::level`](crate::texture::Layout::level). All are whole numbers, exactly.
     #[inline(always)]
-    pub(super) fn fours(&self, simd: S, inv: S::f64s, [column, row]: [S::f64s; 2]) -> [S::f64s; 4] {
+    fn fours(&self, simd: S, inv: S::f64s, [column, row]: [S::f64s; 2]) -> [S::f64s; 4] {
         let (zero, one) = (S::f64s::splat(simd, 0.0), S::f64s::splat(simd, 1.0));
         let is_cell = inv.simd_eq(one);
         let first = is_cell.select(zero, self.end - self.twice * inv);
@@ -322,6 +322,23 @@ impl<'a, S: Simd, T: Stored> LaneRelief<'a, S, T> {
         let below = is_cell.select(self.texel_row, zero);
         let at = (first + column * right) + (row * down + WHOLE);
         T::fours(simd, self.numbers, [at, at + below])
+    }
+
+    /// The same as displacements.
+    #[inline(always)]
+    pub(super) fn displacements(
+        &self,
+        simd: S,
+        inv: S::f64s,
+        square: [S::f64s; 2],
+    ) -> [S::f64s; 4] {
+        let [a, b, c, d] = self.fours(simd, inv, square);
+        [
+            a * self.factor + self.offset,
+            b * self.factor + self.offset,
+            c * self.factor + self.offset,
+            d * self.factor + self.offset,
+        ]
     }
 }
 
@@ -434,11 +451,9 @@ impl<S: Simd> Lanes<S> {
         let leave = exit.min(self.end);
         let [z, z_rate] = self.line;
         let lowest = z + z_rate * z_rate.simd_gt(0.0).select(self.tau, leave);
-        let [a, b, c, d] = relief.fours(simd, inv, [span_x.square, span_y.square]);
-        let h00 = (a * relief.factor + relief.offset) * self.sign;
-        let h10 = (b * relief.factor + relief.offset) * self.sign;
-        let h01 = (c * relief.factor + relief.offset) * self.sign;
-        let h11 = (d * relief.factor + relief.offset) * self.sign;
+        let [a, b, c, d] = relief.displacements(simd, inv, [span_x.square, span_y.square]);
+        let (h00, h10) = (a * self.sign, b * self.sign);
+        let (h01, h11) = (c * self.sign, d * self.sign);
         let high = h00.max(h10).max(h01.max(h11));
 
         let enters = lowest.simd_le(high) & !capped;
