@@ -7,7 +7,6 @@ mod aabb;
 mod bundle;
 pub mod bvh;
 mod kernel;
-mod lanes;
 mod mesh;
 mod normalization;
 mod ray;

@@ -11,6 +11,7 @@ mod woop;
 use glam::Vec3;
 
 use super::{Ray, RaySlabs};
+use crate::math::simd::Simd;
 
 pub use textbook::{MollerTrumbore, ReportEdges};
 pub use watertight::{Axis, Watertight};
@@ -47,20 +48,40 @@ pub trait TriangleTest: Sized {
     /// Degenerate and non-finite triangles, and rays with NaN, give `None`.
     fn intersect(&self, slabs: &RaySlabs, corners: &[Vec3; 3]) -> Option<TriangleHit>;
 
-    /// Calls `visit(lane, hit)` for each lane that [`Self::intersect`] hits, with its bits, until
-    /// `visit` returns `true`; says whether it did.
+    /// Tells `visitor` each lane that [`Self::intersect`] hits and that it wants to know of, with the same bits, until
+    /// it has enough; says whether it has.
     #[inline(always)]
-    fn intersect_block(
+    fn intersect_block<S: Simd>(
         &self,
+        _simd: S,
         slabs: &RaySlabs,
         corners: &Corners8,
-        mut visit: impl FnMut(usize, TriangleHit) -> bool,
+        visitor: &mut impl Visitor,
     ) -> bool {
         (0..LANES).any(|lane| {
             let hit = self.intersect(slabs, &corners_of(corners, lane));
-            hit.is_some_and(|hit| visit(lane, hit))
+            hit.is_some_and(|hit| visitor.visit(lane, hit))
         })
     }
+}
+
+/// What a block of triangles is asked for.
+pub trait Visitor {
+    /// What a hit would mean that lies between two distances: a test may know these before it knows the hit.
+    fn expects(&self, near: f32, far: f32) -> Interest;
+    /// A hit on a lane; says whether that is enough.
+    fn visit(&mut self, lane: usize, hit: TriangleHit) -> bool;
+}
+
+/// What a hit is worth of which little is known yet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Interest {
+    /// It would change nothing.
+    None,
+    /// It depends on where the hit is.
+    Some,
+    /// That there is a hit is enough.
+    Enough,
 }
 
 /// Corners of one lane.

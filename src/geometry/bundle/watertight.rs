@@ -115,23 +115,39 @@ impl<S: Simd> TriangleLanes<S> {
         }))
     }
 
-    /// Where the rays in `mask` meet the triangle that they pass inside of; drops those that do not ahead.
+    /// Between which distances the rays in `mask` meet the triangle that they pass inside of; drops those that do not
+    /// ahead.
+    #[inline(always)]
+    pub(in crate::geometry) fn reach(
+        &self,
+        rays: &Bundle,
+        group: usize,
+        mask: u64,
+    ) -> ((S::f32s, S::f32s), S::mask32s) {
+        let simd = self.simd;
+        let (near, far) = self.interval(rays, group);
+        let ahead = far.simd_gt(S::f32s::splat(simd, 0.0)) & near.simd_le(far);
+        let mask = S::mask32s::from_bitmask(simd, mask);
+        ((near, far), mask & ahead)
+    }
+
+    /// Where the rays in `mask` meet the triangle between two distances; drops those that do not ahead.
     #[inline(always)]
     pub(in crate::geometry) fn locate(
         &self,
         rays: &Bundle,
         group: usize,
-        mask: u64,
+        (near, far): (S::f32s, S::f32s),
+        mask: S::mask32s,
     ) -> LaneHits<S> {
         let simd = self.simd;
         let splat = |x| S::f32s::splat(simd, x);
-        let (near, far) = self.interval(rays, group);
-        let [t, u, v] = self.meet_plane(rays, group, mask);
+        let [t, u, v] = self.meet_plane(rays, group, mask.to_bitmask());
         let (zero, one) = (splat(0.0), splat(1.0));
         let t = smaller(larger(t, near), far);
         let u = smaller(larger(u, zero), one);
         let v = smaller(larger(v, zero), one - u);
-        let mask = S::mask32s::from_bitmask(simd, mask) & near.simd_le(far) & t.simd_gt(zero);
+        let mask = mask & t.simd_gt(zero);
         LaneHits { mask, t, u, v }
     }
 

@@ -7,6 +7,7 @@ use super::stack::{Entry, Stack};
 use crate::geometry::triangle::LANES;
 use crate::geometry::{Aabb, Ray, RaySlabs, TriangleMesh};
 use crate::math::lanes::ones;
+use crate::math::simd::Simd;
 
 /// A hierarchy over boxes, by their index.
 ///
@@ -78,8 +79,8 @@ pub struct BoxesAlong<'a> {
 
 impl BoxesAlong<'_> {
     /// The next box that the ray enters at `limit` or before.
-    #[inline]
-    pub fn next(&mut self, limit: f32) -> Option<u32> {
+    #[inline(always)]
+    pub fn next<S: Simd>(&mut self, simd: S, limit: f32) -> Option<u32> {
         loop {
             while self.left > 0 {
                 self.left -= 1;
@@ -88,12 +89,13 @@ impl BoxesAlong<'_> {
                     return Some(index);
                 }
             }
-            self.next_block(limit)?;
+            self.next_block(simd, limit)?;
         }
     }
 
     /// Goes on to a block and lists its boxes.
-    fn next_block(&mut self, limit: f32) -> Option<()> {
+    #[inline(always)]
+    fn next_block<S: Simd>(&mut self, simd: S, limit: f32) -> Option<()> {
         loop {
             let mut next = loop {
                 let Entry { near, child } = self.stack.pop()?;
@@ -105,7 +107,7 @@ impl BoxesAlong<'_> {
                 match next.unpack() {
                     Child::Node(index) => {
                         let node = &self.bvh.nodes[index];
-                        let (mask, near) = node.hit_lanes(&self.slabs, limit);
+                        let (mask, near) = node.hit_lanes(simd, &self.slabs, limit);
                         match push_sorted(&mut self.stack, node, mask, &near) {
                             Some(child) => next = child,
                             None => break,
@@ -113,7 +115,7 @@ impl BoxesAlong<'_> {
                     }
                     Child::Block(index) => {
                         if let Some(block) = self.bvh.blocks.get(index) {
-                            self.list(block, limit);
+                            self.list(simd, block, limit);
                             return Some(());
                         }
                         break;
@@ -123,9 +125,10 @@ impl BoxesAlong<'_> {
         }
     }
 
-    fn list(&mut self, block: &Block, limit: f32) {
+    #[inline(always)]
+    fn list<S: Simd>(&mut self, simd: S, block: &Block, limit: f32) {
         self.left = 0;
-        let (mask, near) = block.hit_boxes(&self.slabs, limit);
+        let (mask, near) = block.hit_boxes(simd, &self.slabs, limit);
         for lane in ones(u64::from(mask)) {
             let lane = lane % LANES;
             let mut at = self.left;

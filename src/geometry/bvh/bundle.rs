@@ -14,6 +14,15 @@ pub(super) trait Query {
     const ENDS_EARLY: bool;
     /// The distance beyond which a ray takes no interest; negative when it is done.
     fn limits(&self) -> &Floats;
+    /// Rays of a group meet a triangle between two distances: which of those in `mask` must be told where. For the others
+    /// that changes nothing, or is enough and noted.
+    fn expect<S: Simd>(
+        &mut self,
+        simd: S,
+        group: usize,
+        between: (S::f32s, S::f32s),
+        mask: S::mask32s,
+    ) -> S::mask32s;
     /// Considers where the rays of a group meet a triangle.
     fn offer<S: Simd>(&mut self, simd: S, group: usize, prim: u32, hits: LaneHits<S>);
 }
@@ -114,8 +123,13 @@ fn visit_block<S: Simd>(
                 continue;
             }
             let mask = triangle.pass(rays, group, wanted);
-            if mask != 0 {
-                let hits = triangle.locate(rays, group, mask);
+            if mask == 0 {
+                continue;
+            }
+            let (between, mask) = triangle.reach(rays, group, mask);
+            let mask = query.expect(simd, group, between, mask);
+            if mask.any_true() {
+                let hits = triangle.locate(rays, group, between, mask);
                 query.offer(simd, group, prim, hits);
             }
         }

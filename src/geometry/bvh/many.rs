@@ -298,7 +298,7 @@ impl<R: RaySource, Q: LaneQuery, A: Answers<Q>> Kernel for Many<'_, R, Q, A> {
             }
             if untried > 0 {
                 untried -= 1;
-                simd.vectorize(|| self.trace_alone(first, hopeful, &mut stack));
+                simd.vectorize(|| self.trace_alone(simd, first, hopeful, &mut stack));
                 continue;
             }
             let (mut alone, mut cuts, mut all_done) = (hopeful, MAX_CUTS, true);
@@ -328,7 +328,7 @@ impl<R: RaySource, Q: LaneQuery, A: Answers<Q>> Kernel for Many<'_, R, Q, A> {
             };
             untried = doubt / 2;
             if alone != 0 {
-                simd.vectorize(|| self.trace_alone(first, alone, &mut stack));
+                simd.vectorize(|| self.trace_alone(simd, first, alone, &mut stack));
             }
         }
     }
@@ -373,7 +373,7 @@ impl<R: RaySource, Q: LaneQuery, A: Answers<Q>> Many<'_, R, Q, A> {
         } else {
             for lane in ones(set) {
                 let (ray, _) = self.rays.ray(first + lane);
-                let answer = self.query.resume(bvh, stack, lane, &ray);
+                let answer = self.query.resume(simd, bvh, stack, (lane, &ray));
                 self.answers.put(first + lane, answer);
             }
         }
@@ -382,10 +382,10 @@ impl<R: RaySource, Q: LaneQuery, A: Answers<Q>> Many<'_, R, Q, A> {
 
     /// Traces the rays of `set` one by one.
     #[inline(always)]
-    fn trace_alone(&mut self, first: usize, set: RaySet, stack: &mut Stack) {
+    fn trace_alone<S: Simd>(&mut self, simd: S, first: usize, set: RaySet, stack: &mut Stack) {
         for place in ones(set).map(|lane| first + lane) {
             let (ray, t_max) = self.rays.ray(place);
-            let answer = self.query.alone(self.bvh, stack, &ray, t_max);
+            let answer = self.query.alone(simd, self.bvh, stack, (&ray, t_max));
             self.answers.put(place, answer);
         }
     }

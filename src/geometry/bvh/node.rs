@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
-use crate::geometry::lanes::F32x8;
 use crate::geometry::triangle::{Corners8, LANES, corners_of};
 use crate::geometry::{Aabb, RaySlabs, TriangleMesh};
+use crate::math::simd::{Simd, SimdBase as _, SimdMask as _, f32x8, larger, smaller};
 
 /// Marks an unused lane of a [`Block`].
 pub(super) const NO_PRIM: u32 = u32::MAX;
@@ -99,29 +99,40 @@ impl Node {
     ///
     /// The same operations as [`RaySlabs::interval`], so that intervals nest bit for bit.
     #[inline(always)]
-    pub(super) fn hit_lanes(&self, ray: &RaySlabs, t_max: f32) -> (u32, [f32; LANES]) {
+    pub(super) fn hit_lanes<S: Simd>(
+        &self,
+        simd: S,
+        ray: &RaySlabs,
+        t_max: f32,
+    ) -> (u32, [f32; LANES]) {
         let [x, y, z] = &self.planes;
-        hit_lanes([x.each_ref(), y.each_ref(), z.each_ref()], ray, t_max)
+        let planes = [x.each_ref(), y.each_ref(), z.each_ref()];
+        hit_lanes(simd, planes, ray, t_max)
     }
 }
 
 /// Which of eight boxes the ray meets in `[0, t_max]`, as bits, and where it enters each: `[axis][least, most][box]`.
 #[inline(always)]
-fn hit_lanes(planes: [[&[f32; LANES]; 2]; 3], ray: &RaySlabs, t_max: f32) -> (u32, [f32; LANES]) {
-    let (mut near, mut far) = (F32x8::splat(0.0), F32x8::splat(t_max));
+fn hit_lanes<S: Simd>(
+    simd: S,
+    planes: [[&[f32; LANES]; 2]; 3],
+    ray: &RaySlabs,
+    t_max: f32,
+) -> (u32, [f32; LANES]) {
+    let splat = |x| f32x8::splat(simd, x);
+    let (mut near, mut far) = (splat(0.0), splat(t_max));
     let (inv_dir, shifts) = (ray.inv_dir.to_array(), ray.shifts());
     for axis in 0..3 {
         let negative = ray.negative[axis];
-        let first = F32x8::load(planes[axis][usize::from(negative)]);
-        let last = F32x8::load(planes[axis][usize::from(!negative)]);
-        let inv = F32x8::splat(inv_dir[axis]);
-        let [near_shift, far_shift] = shifts[axis].map(F32x8::splat);
-        near = (first * inv - near_shift).max(near);
-        far = (last * inv - far_shift).min(far);
+        let first = f32x8::from_slice(simd, planes[axis][usize::from(negative)]);
+        let last = f32x8::from_slice(simd, planes[axis][usize::from(!negative)]);
+        let [near_shift, far_shift] = shifts[axis];
+        // What is NaN counts for nothing.
+        near = larger(first * inv_dir[axis] - near_shift, near);
+        far = smaller(last * inv_dir[axis] - far_shift, far);
     }
-    // Written so that NaN means a visit, which changes no answer.
-    let mask = !near.greater(far) & ((1 << LANES) - 1);
-    (mask, near.to_array())
+    let mask = near.simd_le(far).to_bitmask() as u32;
+    (mask, near.into())
 }
 
 /// Up to eight triangles: five cache lines.
@@ -154,14 +165,19 @@ impl Block {
 
     /// [`Node::hit_lanes`] for boxes in place of the triangles: those between their first two corners.
     #[inline(always)]
-    pub(super) fn hit_boxes(&self, ray: &RaySlabs, t_max: f32) -> (u32, [f32; LANES]) {
+    pub(super) fn hit_boxes<S: Simd>(
+        &self,
+        simd: S,
+        ray: &RaySlabs,
+        t_max: f32,
+    ) -> (u32, [f32; LANES]) {
         let [least, most, _] = &self.corners;
         let planes = [
             [&least[0], &most[0]],
             [&least[1], &most[1]],
             [&least[2], &most[2]],
         ];
-        let (mask, near) = hit_lanes(planes, ray, t_max);
+        let (mask, near) = hit_lanes(simd, planes, ray, t_max);
         let mut used = 0;
         for (lane, &prim) in self.prims.iter().enumerate() {
             used |= u32::from(prim != NO_PRIM) << lane;
@@ -192,6 +208,7 @@ const _: () = assert!(size_of::<Node>() == 256 && size_of::<Block>() == 320);
 mod tests {
     use super::*;
     use crate::geometry::Ray;
+    use crate::math::simd::PLAIN;
 
     #[test]
     fn unused_lanes_are_missed_and_used_ones_agree_with_the_scalar_test() {
@@ -209,7 +226,7 @@ mod tests {
             ] {
                 let ray = RaySlabs::new(&Ray { origin, dir }, 3.0);
                 let (near, far) = ray.interval(bounds.min, bounds.max);
-                let (mask, entry) = node.hit_lanes(&ray, f32::INFINITY);
+                let (mask, entry) = node.hit_lanes(PLAIN, &ray, f32::INFINITY);
                 let hit = near <= far && far >= 0.0;
                 assert_eq!(mask, u32::from(hit) << 5, "{origin} {dir}");
                 assert!(!hit || entry[5] == near.max(0.0));

@@ -20,10 +20,22 @@ pub(super) trait LaneQuery: Query {
     fn start<S: Simd>(&mut self, simd: S, set: RaySet, t_max: &Floats);
     /// What came of a ray.
     fn answer(&self, lane: usize) -> Self::Answer;
-    /// What comes of a ray whose bundle was given up on the way.
-    fn resume(&self, bvh: &Bvh, stack: &mut Stack, lane: usize, ray: &Ray) -> Self::Answer;
-    /// What comes of a ray in no bundle.
-    fn alone(&self, bvh: &Bvh, stack: &mut Stack, ray: &Ray, t_max: f32) -> Self::Answer;
+    /// What comes of the ray of a lane whose bundle was given up on the way.
+    fn resume<S: Simd>(
+        &self,
+        simd: S,
+        bvh: &Bvh,
+        stack: &mut Stack,
+        ray: (usize, &Ray),
+    ) -> Self::Answer;
+    /// What comes of a ray in no bundle, and its end.
+    fn alone<S: Simd>(
+        &self,
+        simd: S,
+        bvh: &Bvh,
+        stack: &mut Stack,
+        ray: (&Ray, f32),
+    ) -> Self::Answer;
 }
 
 /// Any hit.
@@ -62,6 +74,25 @@ impl<F: HitFilter> Query for AnyLanes<'_, F> {
     }
 
     #[inline(always)]
+    fn expect<S: Simd>(
+        &mut self,
+        simd: S,
+        group: usize,
+        (near, far): (S::f32s, S::f32s),
+        mask: S::mask32s,
+    ) -> S::mask32s {
+        let limits = self.limits.load(simd, group);
+        let mask = mask & near.simd_lt(limits);
+        if !F::ACCEPTS_ALL {
+            return mask;
+        }
+        let enough = mask & near.simd_gt(S::f32s::splat(simd, 0.0)) & far.simd_lt(limits);
+        let limits = merged(enough, S::f32s::splat(simd, DONE), limits);
+        self.limits.store::<S>(group, limits);
+        mask & !enough
+    }
+
+    #[inline(always)]
     fn offer<S: Simd>(&mut self, simd: S, group: usize, prim: u32, hits: LaneHits<S>) {
         let limits = self.limits.load(simd, group);
         let counts = hits.mask & hits.t.simd_lt(limits);
@@ -85,14 +116,26 @@ impl<F: HitFilter> LaneQuery for AnyLanes<'_, F> {
     }
 
     #[inline(always)]
-    fn resume(&self, bvh: &Bvh, stack: &mut Stack, lane: usize, ray: &Ray) -> bool {
-        self.answer(lane) || self.alone(bvh, stack, ray, self.limits.0[lane])
+    fn resume<S: Simd>(
+        &self,
+        simd: S,
+        bvh: &Bvh,
+        stack: &mut Stack,
+        (lane, ray): (usize, &Ray),
+    ) -> bool {
+        self.answer(lane) || self.alone(simd, bvh, stack, (ray, self.limits.0[lane]))
     }
 
     #[inline(always)]
-    fn alone(&self, bvh: &Bvh, stack: &mut Stack, ray: &Ray, t_max: f32) -> bool {
+    fn alone<S: Simd>(
+        &self,
+        simd: S,
+        bvh: &Bvh,
+        stack: &mut Stack,
+        (ray, t_max): (&Ray, f32),
+    ) -> bool {
         let filter = self.filter;
-        bvh.traverse::<Watertight>(ray, stack, &mut Any { t_max, filter })
+        bvh.traverse::<_, Watertight, _>(simd, ray, stack, &mut Any { t_max, filter })
     }
 }
 
@@ -156,6 +199,17 @@ impl<F: HitFilter> Query for ClosestLanes<'_, F> {
     }
 
     #[inline(always)]
+    fn expect<S: Simd>(
+        &mut self,
+        simd: S,
+        group: usize,
+        (near, _far): (S::f32s, S::f32s),
+        mask: S::mask32s,
+    ) -> S::mask32s {
+        mask & near.simd_le(self.limits.load(simd, group))
+    }
+
+    #[inline(always)]
     fn offer<S: Simd>(&mut self, simd: S, group: usize, prim: u32, hits: LaneHits<S>) {
         let width = S::f32s::LEN;
         let limits = self.limits.load(simd, group);
@@ -196,20 +250,32 @@ impl<F: HitFilter> LaneQuery for ClosestLanes<'_, F> {
     }
 
     #[inline(always)]
-    fn resume(&self, bvh: &Bvh, stack: &mut Stack, lane: usize, ray: &Ray) -> Option<Hit> {
+    fn resume<S: Simd>(
+        &self,
+        simd: S,
+        bvh: &Bvh,
+        stack: &mut Stack,
+        (lane, ray): (usize, &Ray),
+    ) -> Option<Hit> {
         let mut search = Closest {
             limit: self.limits.0[lane],
             hit: self.answer(lane),
             filter: self.filter,
         };
-        bvh.traverse::<Watertight>(ray, stack, &mut search);
+        bvh.traverse::<_, Watertight, _>(simd, ray, stack, &mut search);
         search.hit
     }
 
     #[inline(always)]
-    fn alone(&self, bvh: &Bvh, stack: &mut Stack, ray: &Ray, t_max: f32) -> Option<Hit> {
+    fn alone<S: Simd>(
+        &self,
+        simd: S,
+        bvh: &Bvh,
+        stack: &mut Stack,
+        (ray, t_max): (&Ray, f32),
+    ) -> Option<Hit> {
         let mut search = Closest::new(t_max, self.filter);
-        bvh.traverse::<Watertight>(ray, stack, &mut search);
+        bvh.traverse::<_, Watertight, _>(simd, ray, stack, &mut search);
         search.hit
     }
 }

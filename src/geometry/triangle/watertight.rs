@@ -4,13 +4,14 @@ use std::ops::{Add, Div, Mul, Sub};
 
 use glam::Vec3;
 
-use super::{Corners8, LANES, TriangleHit, TriangleTest, corners_of, take_lowest};
-use crate::geometry::lanes::F32x8;
+use super::{
+    Corners8, Interest, LANES, TriangleHit, TriangleTest, Visitor, corners_of, take_lowest,
+};
 use crate::geometry::slabs::{larger, smaller};
 use crate::geometry::{Ray, RaySlabs};
 use crate::math::Real as _;
 use crate::math::lanes::Lanes;
-use crate::math::simd::{Simd, SimdBase as _, SimdMask as _};
+use crate::math::simd::{Simd, SimdBase as _, SimdMask as _, f32x8};
 use crate::math::wide::Wide;
 
 /// A coordinate axis.
@@ -177,32 +178,50 @@ impl Watertight {
 
     /// One corner of eight triangles, translated and sheared.
     #[inline(always)]
-    fn shear8(&self, p: &[[f32; LANES]; 3]) -> [F32x8; 2] {
+    fn shear8<S: Simd>(&self, simd: S, p: &[[f32; LANES]; 3]) -> [f32x8<S>; 2] {
         let [x, y, z] = self.along.last(p.each_ref());
-        let [ox, oy, oz] = self.origin.map(F32x8::splat);
-        let [sx, sy] = self.shear.map(F32x8::splat);
-        let (x, y, z) = (F32x8::load(x), F32x8::load(y), F32x8::load(z) - oz);
-        [sheared(x, ox, sx, z), sheared(y, oy, sy, z)]
+        let [ox, oy, oz] = self.origin;
+        let (x, y, z) = (
+            f32x8::from_slice(simd, x),
+            f32x8::from_slice(simd, y),
+            f32x8::from_slice(simd, z),
+        );
+        let splat = |x| f32x8::splat(simd, x);
+        let z = z - splat(oz);
+        [
+            sheared(x, splat(ox), splat(self.shear[0]), z),
+            sheared(y, splat(oy), splat(self.shear[1]), z),
+        ]
     }
 
     /// [`Self::inside`] for each lane, as bits: inside for certain, and to be decided in `f64`.
     #[inline(always)]
-    fn inside_block(&self, corners: &Corners8) -> [u32; 2] {
-        let [a, b, c] = corners;
-        let [a, b, c] = [self.shear8(a), self.shear8(b), self.shear8(c)];
-        let zero = F32x8::splat(0.0);
-        let [u, v, w] = [edge(c, b), edge(a, c), edge(b, a)];
-        let above = u.greater(zero) & v.greater(zero) & w.greater(zero);
-        let below = zero.greater(u) & zero.greater(v) & zero.greater(w);
-        let on_edge = u.equal(zero) | v.equal(zero) | w.equal(zero);
-        [above | below, on_edge]
+    fn inside_block<S: Simd>(&self, simd: S, [a, b, c]: &Corners8) -> [u32; 2] {
+        let (a, b, c) = (
+            self.shear8(simd, a),
+            self.shear8(simd, b),
+            self.shear8(simd, c),
+        );
+        let zero = f32x8::splat(simd, 0.0);
+        let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
+        let above = u.simd_gt(zero) & v.simd_gt(zero) & w.simd_gt(zero);
+        let below = u.simd_lt(zero) & v.simd_lt(zero) & w.simd_lt(zero);
+        let on_edge = u.simd_eq(zero) | v.simd_eq(zero) | w.simd_eq(zero);
+        [
+            (above | below).to_bitmask() as u32,
+            on_edge.to_bitmask() as u32,
+        ]
     }
 
-    /// Where the ray meets a triangle that it passes inside of; `None` if that is not ahead.
+    /// Between which distances the ray meets a triangle, if it does.
     #[inline(always)]
-    fn locate(&self, slabs: &RaySlabs, corners: &[Vec3; 3]) -> Option<TriangleHit> {
-        let [p0, p1, p2] = *corners;
-        let (near, far) = slabs.interval(p0.min(p1).min(p2), p0.max(p1).max(p2));
+    fn reach(slabs: &RaySlabs, [p0, p1, p2]: &[Vec3; 3]) -> (f32, f32) {
+        slabs.interval(p0.min(*p1).min(*p2), p0.max(*p1).max(*p2))
+    }
+
+    /// Where the ray meets a triangle that it passes inside of, between two distances; `None` if that is not ahead.
+    #[inline(always)]
+    fn locate(&self, (near, far): (f32, f32), corners: &[Vec3; 3]) -> Option<TriangleHit> {
         let [a, b, c] = corners.map(|p| p.as_dvec3());
         let triangle = [a, b - a, c - a].map(|p| p.to_array());
         let origin = self.ray.origin.as_dvec3().to_array();
@@ -279,27 +298,38 @@ impl TriangleTest for Watertight {
     #[inline]
     fn intersect(&self, slabs: &RaySlabs, corners: &[Vec3; 3]) -> Option<TriangleHit> {
         self.inside(corners)
-            .then(|| self.locate(slabs, corners))
+            .then(|| self.locate(Self::reach(slabs, corners), corners))
             .flatten()
     }
 
     #[inline(always)]
-    fn intersect_block(
+    fn intersect_block<S: Simd>(
         &self,
+        simd: S,
         slabs: &RaySlabs,
         corners: &Corners8,
-        mut visit: impl FnMut(usize, TriangleHit) -> bool,
+        visitor: &mut impl Visitor,
     ) -> bool {
-        let [certain, on_edge] = self.inside_block(corners);
+        let [certain, on_edge] = self.inside_block(simd, corners);
         let mut mask = certain | on_edge;
         while mask != 0 {
             let lane = take_lowest(&mut mask);
             let triangle = corners_of(corners, lane);
-            if (on_edge >> lane) & 1 != 0 && !self.inside(&triangle) {
+            // A hit is clipped to these, so what they say needs no look at the hit.
+            let (near, far) = Self::reach(slabs, &triangle);
+            let interest = if near <= far && far > 0.0 {
+                visitor.expects(near, far)
+            } else {
+                Interest::None
+            };
+            if interest == Interest::None || (on_edge >> lane) & 1 != 0 && !self.inside(&triangle) {
                 continue;
             }
-            if let Some(hit) = self.locate(slabs, &triangle)
-                && visit(lane, hit)
+            if interest == Interest::Enough {
+                return true;
+            }
+            if let Some(hit) = self.locate((near, far), &triangle)
+                && visitor.visit(lane, hit)
             {
                 return true;
             }

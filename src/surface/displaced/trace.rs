@@ -527,7 +527,7 @@ impl Kernel for Visit<'_, '_, '_> {
             };
             let mut fine_ray = None;
             let mut boxes = displacement.tree.along(&ray);
-            while let Some(i) = boxes.next(best.t) {
+            while let Some(i) = boxes.next(simd, best.t) {
                 match displacement.pieces[i as usize].shape {
                     Shape::Flat | Shape::Sheet(_) if few => {}
                     Shape::Flat | Shape::Sheet(_) => candidates.push((i, index as u32)),
