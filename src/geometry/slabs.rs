@@ -66,7 +66,8 @@ impl RaySlabs {
     #[inline(always)]
     pub(super) fn shifts(&self) -> [[f32; 2]; 3] {
         let (near, far) = (self.near_shift.to_array(), self.far_shift.to_array());
-        [0, 1, 2].map(|axis| [near[axis], far[axis]])
+        // Not mapped by a closure, which would be a function of its own in a kernel.
+        [[near[0], far[0]], [near[1], far[1]], [near[2], far[2]]]
     }
 
     /// Where the ray enters and leaves the widened box, as distances along it; may be negative.

@@ -89,7 +89,11 @@ impl BoxesAlong<'_> {
                     return Some(index);
                 }
             }
-            self.next_block(simd, limit)?;
+            // A function of its own: within the loop over pieces it would take that loop's registers.
+            simd.vectorize(
+                #[inline(always)]
+                || self.next_block(simd, limit),
+            )?;
         }
     }
 

@@ -173,8 +173,8 @@ impl<'a, 'm> Patch<'a, 'm> {
     #[inline(always)]
     fn uv_at<F: Real>(&self, w: [F; 3]) -> V2<F> {
         V2::new(
-            sum(w, self.uv.map(|uv| uv.x)),
-            sum(w, self.uv.map(|uv| uv.y)),
+            sum(w, [self.uv[0].x, self.uv[1].x, self.uv[2].x]),
+            sum(w, [self.uv[0].y, self.uv[1].y, self.uv[2].y]),
         )
     }
 
@@ -191,14 +191,13 @@ impl<'a, 'm> Patch<'a, 'm> {
         let leaf = [part.a, part.b, part.size];
         let points = self.leaf_points(simd, reliefs, leaf);
         for i in ones(ray.test.may_pass(simd, &points, &TRIANGLES)) {
-            let corners = TRIANGLES.map(|vertices| {
-                let vertex = vertices[i % PARTS] % PARTS;
-                Vec3::new(
-                    points[0].0[vertex],
-                    points[1].0[vertex],
-                    points[2].0[vertex],
-                )
-            });
+            let [a, b, c] = &TRIANGLES;
+            let i = i % PARTS;
+            let corners = [
+                point(&points, a[i]),
+                point(&points, b[i]),
+                point(&points, c[i]),
+            ];
             let Some(hit) = ray.test.intersect(&ray.slabs, &corners) else {
                 continue;
             };
@@ -262,8 +261,8 @@ impl<'a, 'm> Patch<'a, 'm> {
             let w = self.weights(place);
             let d = self.field.height.displacement(self.uv_at(w));
             for (axis, row) in points.iter_mut().enumerate() {
-                let p = sum(w, self.p.map(|p| p[axis]));
-                let n = sum(w, self.n.map(|n| n[axis]));
+                let p = sum(w, along(&self.p, axis));
+                let n = sum(w, along(&self.n, axis));
                 row.set(group, p + n * d);
             }
         }
@@ -292,8 +291,8 @@ impl<'a, 'm> Patch<'a, 'm> {
             }
             if let Some(d) = seams.displacement(reliefs, by_corner) {
                 for (axis, row) in points.iter_mut().enumerate() {
-                    let p = sum(w, self.p.map(|p| p[axis]));
-                    let n = sum(w, self.n.map(|n| n[axis]));
+                    let p = sum(w, along(&self.p, axis));
+                    let n = sum(w, along(&self.n, axis));
                     row.0[i] = p + n * d;
                 }
             }
@@ -332,6 +331,19 @@ impl<'a, 'm> Patch<'a, 'm> {
             normal,
         }
     }
+}
+
+/// A coordinate of three points.
+#[inline(always)]
+fn along([a, b, c]: &[Vec3; 3], axis: usize) -> [f32; 3] {
+    [a[axis], b[axis], c[axis]]
+}
+
+/// A vertex of a part with four segments.
+#[inline(always)]
+fn point([x, y, z]: &[Row; 3], vertex: usize) -> Vec3 {
+    let vertex = vertex % PARTS;
+    Vec3::new(x.0[vertex], y.0[vertex], z.0[vertex])
 }
 
 /// A patch made ready for rays: hits and micro-triangles alone need none of this.
@@ -476,7 +488,8 @@ impl<'a, 'm> Meeting<'a, 'm> {
             let mut near = Row::splat(0.0);
             let mut met = 0;
             let per_quarter = (part.size / 4) as f32 * patch.per_segment();
-            let [a0, b0] = [part.a, part.b].map(|i| i as f32 * patch.per_segment());
+            let a0 = part.a as f32 * patch.per_segment();
+            let b0 = part.b as f32 * patch.per_segment();
             for group in 0..PARTS / S::f32s::LEN {
                 let [a, b, s] = &CUTS;
                 let places = [
@@ -497,7 +510,8 @@ impl<'a, 'm> Meeting<'a, 'm> {
             let quarter = part.size / 4;
             for i in ones(met) {
                 let i = i % PARTS;
-                let [a, b, s] = CUT[i].map(|x| x * quarter);
+                let [a, b, s] = CUT[i];
+                let [a, b, s] = [a * quarter, b * quarter, s * quarter];
                 let child = Part {
                     a: part.a + a,
                     b: part.b + b,
