@@ -55,6 +55,21 @@ unsafe impl<const N: usize> Words<N> for [f32; N] {
         self.map(f32::to_bits)
     }
 }
+// SAFETY: four bytes; machines that gather have the lowest first.
+unsafe impl Words<1> for [u8; 4] {
+    #[inline(always)]
+    fn words(self) -> [u32; 1] {
+        [u32::from_le_bytes(self)]
+    }
+}
+// SAFETY: two words of two numbers each; machines that gather have the lower first.
+unsafe impl Words<2> for [u16; 4] {
+    #[inline(always)]
+    fn words(self) -> [u32; 2] {
+        let [a, b, c, d] = self.map(u32::from);
+        [a | b << 16, c | d << 16]
+    }
+}
 // SAFETY: two floats, `repr(C)`.
 unsafe impl Words<2> for Vec2 {
     #[inline(always)]

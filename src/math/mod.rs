@@ -13,7 +13,6 @@ mod power;
 mod real;
 pub(crate) mod rows;
 pub mod simd;
-mod texels;
 mod vector;
 pub(crate) mod wide;
 
@@ -26,5 +25,4 @@ pub use hash::{hash, unit_interval};
 pub use normalize::normalize_or;
 pub use power::power_below_one;
 pub use real::{Bits, Mask, Real};
-pub use texels::Channels;
 pub use vector::{V2, V3, angle};

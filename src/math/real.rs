@@ -11,7 +11,6 @@ use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use super::fetch::{self, Words};
-use super::texels::{self, Channels};
 
 /// Numbers with the rounding of `f32`.
 pub trait Real:
@@ -67,13 +66,6 @@ pub trait Real:
         inputs: [Self; I],
         f: impl Fn([f32; I]) -> [f32; O],
     ) -> [Self; O];
-
-    /// The bilinear mean of three channels of texels: those at the corners (left and right above, then below), weighed by
-    /// the way to go to the right and down, 0…1.
-    ///
-    /// # Panics
-    /// If there is no texel at one of the corners.
-    fn mean_of(corners: [Self::Bits; 4], way: [Self; 2], of: impl Channels) -> [Self; 3];
 
     /// `self > o`; no for NaN.
     #[inline(always)]
@@ -202,10 +194,6 @@ impl Real for f32 {
         if wanted { f(inputs) } else { [0.0; O] }
     }
 
-    #[inline(always)]
-    fn mean_of(corners: [u32; 4], way: [Self; 2], of: impl Channels) -> [Self; 3] {
-        texels::mean(corners, way, of)
-    }
     #[inline(always)]
     fn splat(self, x: f32) -> Self {
         x

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use fearless_simd::Level;
 
 pub(crate) use fearless_simd::{Bytes, Select, Simd, SimdBase, SimdFloat, SimdMask};
-pub(crate) use fearless_simd::{ExtractToken, SimdCvtFloat, SimdNarrow, SimdWiden, f32x4, f32x8};
+pub(crate) use fearless_simd::{ExtractToken, SimdCvtFloat, SimdNarrow, SimdWiden, f32x8};
 
 /// The token of plain code, which every machine runs.
 pub(crate) const PLAIN: fearless_simd::Fallback = fearless_simd::Fallback::new();

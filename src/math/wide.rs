@@ -8,7 +8,6 @@ use super::simd::{
     Bytes as _, ExtractToken as _, Select as _, Simd, SimdBase, SimdCvtFloat as _, SimdFloat,
     SimdMask, larger, smaller,
 };
-use super::texels::{self, Channels};
 
 /// Most lanes that a vector of any machine has.
 const MAX_LANES: usize = 16;
@@ -172,12 +171,6 @@ impl<S: Simd> Real for Wide<S> {
             wide[o] = Self(S::f32s::from_slice(simd, &found[o][..S::f32s::LEN]));
         }
         wide
-    }
-    #[inline(always)]
-    fn mean_of(corners: [WideBits<S>; 4], way: [Self; 2], of: impl Channels) -> [Self; 3] {
-        let [a, b, c, d] = corners;
-        let [x, y, z] = texels::means::<S>([a.0, b.0, c.0, d.0], [way[0].0, way[1].0], of);
-        [Self(x), Self(y), Self(z)]
     }
     #[inline(always)]
     fn to_index(self) -> WideBits<S> {

@@ -4,10 +4,10 @@ use std::sync::LazyLock;
 
 use glam::Vec2;
 
-use super::grid::Floats;
+use super::grid::{Decode, Floats};
 use super::mips::{Ahead, halvings};
 use super::{Grid, RawImage, Samples, Wrap};
-use crate::math::{Channels, LinearRgb, Real, V2, linear_from_srgb};
+use crate::math::{Bits as _, LinearRgb, Real, V2, linear_from_srgb};
 
 /// Colours of a surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,11 +56,8 @@ impl ColorMap {
     #[inline(always)]
     pub fn sample<F: Real>(&self, st: V2<F>, wrap: Wrap) -> LinearRgb<F> {
         match self {
-            Self::Srgb8(g) => LinearRgb::from(g.cell(st, wrap).mean_of(Srgb {
-                texels: g.texels(),
-                linear: &LINEAR_FROM_BYTE,
-            })),
-            Self::Linear(g) => LinearRgb::from(g.cell(st, wrap).mean_of(Floats(g.texels()))),
+            Self::Srgb8(g) => LinearRgb::from(g.mix(&g.cell(st, wrap), Srgb)),
+            Self::Linear(g) => LinearRgb::from(g.mix(&g.cell(st, wrap), Floats)),
         }
     }
 
@@ -107,18 +104,17 @@ impl Ahead for ColorMap {
     }
 }
 
-/// sRGB bytes, and what each of them means.
+/// Three sRGB bytes, the lowest first.
 #[derive(Clone, Copy)]
-struct Srgb<'a> {
-    texels: &'a [[u8; 4]],
-    linear: &'a [f32; 256],
-}
+struct Srgb;
 
-impl Channels for Srgb<'_> {
+impl Decode<1, 3> for Srgb {
     #[inline(always)]
-    fn at(self, index: usize) -> [f32; 4] {
-        let [r, g, b, _] = self.texels[index];
-        let linear = |byte: u8| self.linear[usize::from(byte)];
-        [linear(r), linear(g), linear(b), 0.0]
+    fn decode<F: Real>(self, [texel]: [F::Bits; 1]) -> [F; 3] {
+        let linear = &*LINEAR_FROM_BYTE;
+        let [r] = texel.and(0xff).fetch(linear);
+        let [g] = texel.shr(8).and(0xff).fetch(linear);
+        let [b] = texel.shr(16).and(0xff).fetch(linear);
+        Floats.decode([r, g, b])
     }
 }

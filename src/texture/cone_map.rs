@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
+use super::grid::Floats;
 use super::{Grid, HeightMap, Wrap};
 use crate::math::{Real, V2};
 
@@ -45,7 +46,7 @@ impl ConeMap {
     #[inline(always)]
     pub fn narrowest<F: Real>(&self, st: V2<F>, wrap: Wrap) -> F {
         let cell = self.0.cell(st, wrap);
-        let [[a], [b], [c], [d]] = self.0.corners(&cell);
+        let [[a], [b], [c], [d]] = self.0.corners(&cell, Floats);
         a.smaller(b).smaller(c.smaller(d))
     }
 

@@ -1,7 +1,7 @@
 //! A rectangle of texels and the address arithmetic of bilinear look-ups.
 
 use super::Wrap;
-use crate::math::{Bits, Channels, Real, V2, Words};
+use crate::math::{Bits, Real, V2, Words};
 
 /// `width · height` texels, row 0 on top.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,6 +9,29 @@ pub struct Grid<T> {
     width: u32,
     height: u32,
     texels: Vec<T>,
+}
+
+/// How `N` channels are read from the `B` words of a texel.
+///
+/// A trait, because a function that is handed on as a value is compiled without the vector instructions of its caller.
+pub(super) trait Decode<const B: usize, const N: usize>: Copy {
+    /// The channels.
+    fn decode<F: Real>(self, words: [F::Bits; B]) -> [F; N];
+}
+
+/// Channels that are stored as floats.
+#[derive(Clone, Copy)]
+pub(super) struct Floats;
+
+impl<const N: usize> Decode<N, N> for Floats {
+    #[inline(always)]
+    fn decode<F: Real>(self, words: [F::Bits; N]) -> [F; N] {
+        let mut floats = [words[0].to_real(); N];
+        for n in 1..N {
+            floats[n] = words[n].to_real();
+        }
+        floats
+    }
 }
 
 /// Four texel indices around a point and its place between them; with vector lanes, for each.
@@ -100,13 +123,17 @@ impl<T: Copy> Grid<T> {
             .prefetch(&self.texels);
     }
 
-    /// Bilinear means of `N` floats.
+    /// Bilinear means of `N` channels.
     #[inline(always)]
-    pub(super) fn mix<F: Real, const N: usize>(&self, cell: &BilinearCell<F>) -> [F; N]
+    pub(super) fn mix<F: Real, const N: usize, const B: usize>(
+        &self,
+        cell: &BilinearCell<F>,
+        how: impl Decode<B, N>,
+    ) -> [F; N]
     where
-        T: Words<N>,
+        T: Words<B>,
     {
-        let [a, b, c, d] = self.corners(cell);
+        let [a, b, c, d] = self.corners(cell, how);
         let mut mixed = a;
         for n in 0..N {
             mixed[n] = cell.mix([a[n], b[n], c[n], d[n]]);
@@ -114,41 +141,24 @@ impl<T: Copy> Grid<T> {
         mixed
     }
 
-    /// The floats at the four corners.
+    /// The channels of the four corners.
     #[inline(always)]
-    pub(super) fn corners<F: Real, const N: usize>(&self, cell: &BilinearCell<F>) -> [[F; N]; 4]
+    pub(super) fn corners<F: Real, const N: usize, const B: usize>(
+        &self,
+        cell: &BilinearCell<F>,
+        how: impl Decode<B, N>,
+    ) -> [[F; N]; 4]
     where
-        T: Words<N>,
+        T: Words<B>,
     {
         let [a, b, c, d] = cell.texels;
+        let texels = &*self.texels;
         [
-            floats(a.fetch(&self.texels)),
-            floats(b.fetch(&self.texels)),
-            floats(c.fetch(&self.texels)),
-            floats(d.fetch(&self.texels)),
+            how.decode(a.fetch(texels)),
+            how.decode(b.fetch(texels)),
+            how.decode(c.fetch(texels)),
+            how.decode(d.fetch(texels)),
         ]
-    }
-}
-
-/// What words mean that hold floats.
-#[inline(always)]
-fn floats<B: Bits, const N: usize>(words: [B; N]) -> [B::Real; N] {
-    let mut floats = [words[0].to_real(); N];
-    for n in 1..N {
-        floats[n] = words[n].to_real();
-    }
-    floats
-}
-
-/// Texels of three floats.
-#[derive(Clone, Copy)]
-pub(super) struct Floats<'a>(pub(super) &'a [[f32; 3]]);
-
-impl Channels for Floats<'_> {
-    #[inline(always)]
-    fn at(self, index: usize) -> [f32; 4] {
-        let [x, y, z] = self.0[index];
-        [x, y, z, 0.0]
     }
 }
 
@@ -189,13 +199,6 @@ impl Wrap {
 }
 
 impl<F: Real> BilinearCell<F> {
-    /// The bilinear means of three channels.
-    #[must_use]
-    #[inline(always)]
-    pub(super) fn mean_of(&self, channels: impl Channels) -> [F; 3] {
-        F::mean_of(self.texels, [self.fx, self.fy], channels)
-    }
-
     /// The bilinear mean of four corner values in the order of `texels`.
     #[must_use]
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use super::grid::BilinearCell;
+use super::grid::{BilinearCell, Floats};
 use super::mips::{Ahead, halvings};
 use super::{Channel, Grid, RawImage, Samples, Wrap};
 use crate::math::{Bits as _, Mask as _, Real, V2};
@@ -159,7 +159,7 @@ impl HeightMap {
             }
             Self::F32(g) => {
                 let cell = g.cell(st, wrap);
-                let [[a], [b], [c], [d]] = g.corners(&cell);
+                let [[a], [b], [c], [d]] = g.corners(&cell, Floats);
                 (cell, [a, b, c, d])
             }
         }

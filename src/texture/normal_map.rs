@@ -2,10 +2,10 @@
 
 use glam::{Vec2, Vec3};
 
-use super::grid::Floats;
+use super::grid::{Decode, Floats};
 use super::mips::{Ahead, halvings};
 use super::{Grid, MapRole, RawImage, Samples, Wrap};
-use crate::math::{Channels, Real, V2, V3, normalize_or};
+use crate::math::{Bits as _, Real, V2, V3, normalize_or};
 
 /// Three numbers a texel, read as `2c − 1`.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,9 +54,9 @@ impl NormalMap {
     #[inline(always)]
     pub fn sample<F: Real>(&self, st: V2<F>, wrap: Wrap) -> V3<F> {
         let ([x, y, z], factor) = match self {
-            Self::U8(g) => (g.cell(st, wrap).mean_of(Bytes(g.texels())), 2.0 / 255.0),
-            Self::U16(g) => (g.cell(st, wrap).mean_of(Halves(g.texels())), 2.0 / 65_535.0),
-            Self::F32(g) => (g.cell(st, wrap).mean_of(Floats(g.texels())), 2.0),
+            Self::U8(g) => (g.mix(&g.cell(st, wrap), Bytes), 2.0 / 255.0),
+            Self::U16(g) => (g.mix(&g.cell(st, wrap), Halves), 2.0 / 65_535.0),
+            Self::F32(g) => (g.mix(&g.cell(st, wrap), Floats), 2.0),
         };
         V3::new(x * factor - 1.0, y * factor - 1.0, z * factor - 1.0)
     }
@@ -128,24 +128,32 @@ impl Ahead for NormalMap {
     }
 }
 
-/// Bytes as they are.
+/// Three bytes, the lowest first.
 #[derive(Clone, Copy)]
-struct Bytes<'a>(&'a [[u8; 4]]);
+struct Bytes;
 
-impl Channels for Bytes<'_> {
+impl Decode<1, 3> for Bytes {
     #[inline(always)]
-    fn at(self, index: usize) -> [f32; 4] {
-        self.0[index].map(f32::from)
+    fn decode<F: Real>(self, [xyz]: [F::Bits; 1]) -> [F; 3] {
+        [
+            xyz.and(0xff).signed_to_real(),
+            xyz.shr(8).and(0xff).signed_to_real(),
+            xyz.shr(16).and(0xff).signed_to_real(),
+        ]
     }
 }
 
-/// Numbers of 16 bits as they are.
+/// Three numbers of 16 bits, the lowest first.
 #[derive(Clone, Copy)]
-struct Halves<'a>(&'a [[u16; 4]]);
+struct Halves;
 
-impl Channels for Halves<'_> {
+impl Decode<2, 3> for Halves {
     #[inline(always)]
-    fn at(self, index: usize) -> [f32; 4] {
-        self.0[index].map(f32::from)
+    fn decode<F: Real>(self, [xy, z]: [F::Bits; 2]) -> [F; 3] {
+        [
+            xy.and(0xffff).signed_to_real(),
+            xy.shr(16).signed_to_real(),
+            z.and(0xffff).signed_to_real(),
+        ]
     }
 }

@@ -1,5 +1,6 @@
 //! How much slopes differ within what a ray's cone covers.
 
+use super::grid::Floats;
 use super::mips::halvings;
 use super::{Grid, HeightMap, NormalMap, Wrap};
 use crate::math::{Real, V2};
@@ -53,7 +54,7 @@ impl SlopeMoments {
     #[inline(always)]
     pub fn variances<F: Real>(&self, st: V2<F>, wrap: Wrap) -> [F; 3] {
         let cell = self.0.cell(st, wrap);
-        let [a, b, aa, bb, ab] = self.0.mix(&cell);
+        let [a, b, aa, bb, ab] = self.0.mix(&cell, Floats);
         let zero = a.splat(0.0);
         // Rounding can leave a hair less than nothing.
         [
