@@ -213,9 +213,9 @@ impl Watertight {
         ]
     }
 
-    /// Between which distances the ray meets a triangle, if it does.
+    /// Between which distances the ray meets a triangle, if it does: those at which it is in the triangle's own box.
     #[inline(always)]
-    fn reach(slabs: &RaySlabs, [p0, p1, p2]: &[Vec3; 3]) -> (f32, f32) {
+    fn interval(slabs: &RaySlabs, [p0, p1, p2]: &[Vec3; 3]) -> (f32, f32) {
         slabs.interval(p0.min(*p1).min(*p2), p0.max(*p1).max(*p2))
     }
 
@@ -298,7 +298,7 @@ impl TriangleTest for Watertight {
     #[inline]
     fn intersect(&self, slabs: &RaySlabs, corners: &[Vec3; 3]) -> Option<TriangleHit> {
         self.inside(corners)
-            .then(|| self.locate(Self::reach(slabs, corners), corners))
+            .then(|| self.locate(Self::interval(slabs, corners), corners))
             .flatten()
     }
 
@@ -316,7 +316,7 @@ impl TriangleTest for Watertight {
             let lane = take_lowest(&mut mask);
             let triangle = corners_of(corners, lane);
             // A hit is clipped to these, so what they say needs no look at the hit.
-            let (near, far) = Self::reach(slabs, &triangle);
+            let (near, far) = Self::interval(slabs, &triangle);
             let interest = if near <= far && far > 0.0 {
                 visitor.expects(near, far)
             } else {
