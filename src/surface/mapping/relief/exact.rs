@@ -1,6 +1,8 @@
 //! The exact walk for surface points, for the eye and for lights: from a point to a ray over the chart and back.
 
-use super::walk::{ReliefField, ReliefRay, Walk};
+use super::field::ReliefField;
+use super::ray::ReliefRay;
+use super::walk::Walk;
 use super::{Found, shell::Shell};
 use crate::geometry::UvChart;
 use crate::math::{Real, V2, V3};

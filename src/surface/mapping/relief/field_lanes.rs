@@ -1,7 +1,8 @@
 //! What [`ReliefField`] says of one place, for a place in each vector lane: the same bits.
 
+use super::field::ReliefField;
 use super::lane_axis::LaneAxis;
-use super::walk::{FARTHEST, ReliefField};
+use super::ray::FARTHEST;
 use super::walk_lanes::{LaneRelief, Stored};
 use crate::math::simd::{Select as _, Simd, SimdBase as _, SimdFloat as _};
 use crate::texture::{StoredHeights, Wrap};

@@ -7,7 +7,9 @@
 
 use super::lane_axis::LaneAxis;
 use super::parabola::{first_not_above, is_not_above};
-use super::walk::{ReliefRay, STEP_CAP, Typed, Walk};
+use super::ray::ReliefRay;
+use super::typed::Typed;
+use super::walk::{STEP_CAP, Walk};
 use crate::math::fetch::{WHOLE, wide_pairs};
 use crate::math::rows::{MAX_LANES, Row, load, store};
 use crate::math::simd::{
