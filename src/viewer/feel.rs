@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, ViewportCommand, pos2};
 
 use super::status::Progress;
-use super::{ViewError, ViewOptions, ViewerApp, show_window};
+use super::{Memory, ViewError, ViewOptions, ViewerApp, show_window};
 use crate::measure::feel::Feel;
 use crate::scene::LoadedScene;
 
@@ -46,7 +46,7 @@ pub struct Felt {
 pub fn measure_feel(options: FeelOptions) -> Result<Vec<Felt>, ViewError> {
     let (felt, answers) = channel();
     let (count, size) = (options.scenes.len(), options.size);
-    show_window(size, move |creation| {
+    show_window(size, Memory::Blank, move |creation| {
         let view = ViewOptions {
             threads: options.threads,
             ..ViewOptions::default()

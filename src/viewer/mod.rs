@@ -82,14 +82,24 @@ const WINDOW: [u32; 2] = [1280, 720];
 /// # Errors
 /// [`ViewError`], one line for the user, where no window can be shown.
 pub fn run(options: ViewOptions) -> Result<(), ViewError> {
-    show_window(WINDOW, |creation| {
+    show_window(WINDOW, Memory::Kept, |creation| {
         Ok(Box::new(ViewerApp::new(creation, options)?))
     })
+}
+
+/// What a window knows of those before it: size, place, what is folded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Memory {
+    /// As the user left the last one, and keeps it.
+    Kept,
+    /// Nothing, and leaves nothing.
+    Blank,
 }
 
 /// Shows a window until it is closed.
 fn show_window(
     size: [u32; 2],
+    memory: Memory,
     app: impl FnOnce(&eframe::CreationContext<'_>) -> std::io::Result<Box<dyn eframe::App>>,
 ) -> Result<(), ViewError> {
     if !has_display() {
@@ -103,6 +113,10 @@ fn show_window(
             .with_min_inner_size([480.0, 320.0])
             .with_drag_and_drop(true),
         dithering: false,
+        persist_window: memory == Memory::Kept,
+        // A file that is not there, and that nothing is written to.
+        persistence_path: (memory == Memory::Blank)
+            .then(|| std::env::temp_dir().join(format!("reliefscope-{}.ron", std::process::id()))),
         ..eframe::NativeOptions::default()
     };
     // Without a server the window system's libraries panic instead of returning an error.
