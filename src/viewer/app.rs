@@ -399,8 +399,11 @@ impl ViewerApp {
             Command::ExposureDown => *exposure = brighter(*exposure - EXPOSURE_STEP),
             Command::NextView => doc.display.view = doc.display.view.next(),
             Command::PreviousView => doc.display.view = doc.display.view.previous(),
-            Command::ToggleCompare => doc.comparison.on = !doc.comparison.on,
-            Command::ToggleError => doc.comparison.toggle_error(),
+            Command::ToggleCompare => {
+                let on = !doc.comparison.on;
+                doc.comparison.turn(on, doc.settings.mapping.method);
+            }
+            Command::ToggleError => doc.comparison.toggle_error(doc.settings.mapping.method),
             Command::Select(method) => doc.settings.mapping.method = method,
             Command::Undo => note_unless(doc.undo(), &mut self.toasts, "Nothing to undo."),
             Command::Redo => note_unless(doc.redo(), &mut self.toasts, "Nothing to redo."),
@@ -442,24 +445,30 @@ impl ViewerApp {
         let Some(doc) = &self.doc else {
             return [window; 2];
         };
+        doc.comparison.panes(window, self.free(window))
+    }
+
+    /// The part of the window that panel and status line leave.
+    fn free(&self, window: Rect) -> Rect {
         let mut free = window;
         free.max.y -= status::HEIGHT;
         if self.preferences.panel {
             free.max.x -= panels::covered_width(window);
         }
-        doc.comparison.panes(window, free)
+        free
     }
 
     /// What the mouse does in the picture; while two are compared it paints them and says so.
     fn viewport_ui(&mut self, ui: &egui::Ui, window: Rect, panes: [Rect; 2]) -> bool {
         let response = viewport::sense_ui(ui, window);
+        let free = self.free(window);
         let Some(doc) = &mut self.doc else {
             return false;
         };
         let method = doc.settings.mapping.method.info().label;
         let comparison = &mut doc.comparison;
         let are_painted =
-            compare_view::pictures_ui(ui, panes, &self.framebuffer, comparison, method);
+            compare_view::pictures_ui(ui, (panes, free), &self.framebuffer, comparison, method);
         let pointer = ui.input(|input| input.pointer.interact_pos());
         let in_b = pointer.is_some_and(|pos| panes[1].contains(pos));
         let rect = if in_b { panes[1] } else { panes[0] };

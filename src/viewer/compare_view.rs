@@ -16,10 +16,10 @@ const MARGIN: f32 = 10.0;
 const HOLD: Key = Key::B;
 
 /// Paints both pictures while two methods are compared, and says so; then the line between them can be
-/// dragged. A single picture it leaves to the caller.
+/// dragged. A single picture it leaves to the caller. Names stand in the part of the window that is `free`.
 pub fn pictures_ui(
     ui: &Ui,
-    [left, right]: [Rect; 2],
+    ([left, right], free): ([Rect; 2], Rect),
     framebuffer: &Framebuffer,
     comparison: &mut Comparison,
     name: &str,
@@ -31,16 +31,15 @@ pub fn pictures_ui(
     if comparison.is_side_by_side() {
         for (pane, side, name) in [(left, Side::A, &names[0]), (right, Side::B, &names[1])] {
             framebuffer.paint(ui.painter(), pane, side);
-            name_ui(ui, pane, pane.left() + MARGIN, Align2::LEFT_TOP, name);
+            name_ui(ui, (pane, free), Align2::LEFT_TOP, name);
         }
         return true;
     }
-    let at_edge = left.left() + MARGIN;
     let held = !ui.ctx().text_edit_focused() && ui.input(|input| input.key_down(HOLD));
     if held || comparison.layout == Layout::Hold {
         let (side, name) = if held { (Side::B, 1) } else { (Side::A, 0) };
         framebuffer.paint(ui.painter(), left, side);
-        name_ui(ui, left, at_edge, Align2::LEFT_TOP, &names[name]);
+        name_ui(ui, (left, free), Align2::LEFT_TOP, &names[name]);
         return true;
     }
     let line = drag_line(ui, left, &mut comparison.split);
@@ -51,15 +50,15 @@ pub fn pictures_ui(
         framebuffer.paint(&painter, left, side);
     }
     draw_line(ui.painter(), left, line);
-    name_ui(ui, a, line - MARGIN, Align2::RIGHT_TOP, &names[0]);
-    name_ui(ui, b, line + MARGIN, Align2::LEFT_TOP, &names[1]);
+    name_ui(ui, (a, free), Align2::RIGHT_TOP, &names[0]);
+    name_ui(ui, (b, free), Align2::LEFT_TOP, &names[1]);
     true
 }
 
 fn other_name(comparison: &Comparison) -> String {
     let method = second_label(comparison.method);
     match comparison.error {
-        Some(metric) => format!("A against {method} · {}", metric.label()),
+        Some(_) => format!("A against {method}"),
         None => format!("B · {method}"),
     }
 }
@@ -94,17 +93,18 @@ fn draw_line(painter: &Painter, rect: Rect, x: f32) {
     }
 }
 
-/// A picture's name at its top, unless its part is too narrow.
-fn name_ui(ui: &Ui, part: Rect, x: f32, align: Align2, name: &str) {
+/// A picture's name at its top, where its part is free if there is room, unless all of the part is too narrow.
+fn name_ui(ui: &Ui, (part, free): (Rect, Rect), align: Align2, name: &str) {
     let font = FontId::proportional(13.5);
     let galley = ui
         .painter()
         .layout_no_wrap(name.to_owned(), font, Color32::WHITE);
     let size = galley.size() + vec2(14.0, 6.0);
-    if size.x + MARGIN > part.width() {
+    let has_room = |part: &Rect| size.x + MARGIN <= part.width();
+    let Some(part) = [part.intersect(free), part].into_iter().find(has_room) else {
         return;
-    }
-    let rect = align.anchor_size(pos2(x, part.top() + MARGIN), size);
+    };
+    let rect = align.align_size_within_rect(size, part.shrink(MARGIN));
     let painter = ui.painter();
     painter.rect_filled(rect, 4.0, Color32::from_black_alpha(170));
     painter.galley(rect.min + vec2(7.0, 3.0), galley, Color32::WHITE);

@@ -100,6 +100,14 @@ impl Comparison {
         })
     }
 
+    /// Turns it on or off beside the document's method. A method against itself says nothing: B is another then.
+    pub fn turn(&mut self, on: bool, a: Method) {
+        self.on = on;
+        if on && self.method == a {
+            self.method = if a == TRUTH { Method::default() } else { TRUTH };
+        }
+    }
+
     /// Chooses what is shown in place of B, on a scale that suits it.
     pub fn show_error(&mut self, error: Option<ErrorMetric>) {
         if let Some(metric) = error.filter(|_| error != self.error) {
@@ -109,10 +117,10 @@ impl Comparison {
     }
 
     /// Error on, and with it the comparison; or back to picture B.
-    pub fn toggle_error(&mut self) {
+    pub fn toggle_error(&mut self, a: Method) {
         let shown = self.on && self.error.is_some();
         self.show_error((!shown).then(|| self.error.unwrap_or_default()));
-        self.on = true;
+        self.turn(true, a);
     }
 
     /// Whether A and B stand side by side.
@@ -143,11 +151,25 @@ mod tests {
     fn nothing_is_asked_for_while_off() {
         let mut comparison = Comparison::default();
         assert_eq!(comparison.request(), None);
-        comparison.toggle_error();
+        comparison.toggle_error(Method::Bump);
         let error = comparison.request().and_then(|compare| compare.error);
         assert_eq!(error.map(|e| e.metric), Some(ErrorMetric::Luma));
-        comparison.toggle_error();
+        comparison.toggle_error(Method::Bump);
         assert!(comparison.on && comparison.error.is_none());
+    }
+
+    #[test]
+    fn turned_on_it_compares_two_methods() {
+        for a in Method::ALL {
+            let mut comparison = Comparison::default();
+            comparison.turn(true, a);
+            assert!(comparison.on && comparison.method != a);
+            // What was chosen stays.
+            comparison.turn(false, comparison.method);
+            let b = comparison.method;
+            comparison.turn(true, a);
+            assert_eq!(comparison.method, b);
+        }
     }
 
     #[test]

@@ -9,11 +9,18 @@ use crate::viewer::comparison::{Layout, second_name};
 use crate::viewer::widgets::{Caption, Number, choice_ui, number_ui, slider_ui};
 
 pub(super) fn compare_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
+    let a = panel.doc.settings.mapping.method;
     let comparison = &mut panel.doc.comparison;
-    ui.checkbox(&mut comparison.on, "Compare two methods")
+    let mut on = comparison.on;
+    let toggled = ui
+        .checkbox(&mut on, "Compare two methods")
         .on_hover_text(
             "A is the method above. B is rendered beside it, with the same camera and samples",
-        );
+        )
+        .changed();
+    if toggled {
+        comparison.turn(on, a);
+    }
     ui.add_enabled_ui(comparison.on, |ui| {
         let caption = Caption::named("Method B", "Other method");
         choice_ui(

@@ -12,7 +12,8 @@ use crate::render::{
 };
 use crate::scene::{DisplaySettings, View};
 
-/// The renderers of a job. The second exists only while two methods are compared.
+/// The renderers of a job. The second exists only while two methods are compared: a method beside itself is one picture
+/// shown twice.
 pub(super) struct Pair {
     /// The pool size asked for.
     pub threads: usize,
@@ -64,7 +65,8 @@ impl Pair {
         factory: &mut RendererFactory,
     ) -> io::Result<()> {
         let (snapshot, recording) = (&request.snapshot, request.recording());
-        match request.compare {
+        let a = snapshot.settings.mapping.method;
+        match request.compare.filter(|compare| compare.method != a) {
             None => self.drop_second(),
             Some(compare) => {
                 let mut settings = (*snapshot.settings).clone();
@@ -185,12 +187,17 @@ impl Pair {
             pixels
         };
         let mut first = encoded(&*self.first);
-        let second = self.second.as_ref().filter(|_| request.compare.is_some());
-        let mut other = second.map(|second| encoded(&**second));
-        let records = self.records.each_ref().map(|known| {
+        let mut other = request.compare.map(|_| match &self.second {
+            Some(second) => encoded(&**second),
+            None => encoded(&*self.first),
+        });
+        let mut records = self.records.each_ref().map(|known| {
             let known = known.as_ref().filter(|_| is_recorded);
             known.map(|known| &known.records)
         });
+        if self.second.is_none() && request.compare.is_some() {
+            records[1] = records[0];
+        }
         let error = request.compare.and_then(|compare| compare.error);
         let error = error.zip(other.as_mut()).map(|(error, other)| {
             let Shown { size, stride } = self.first.shown();

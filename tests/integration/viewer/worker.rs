@@ -382,6 +382,24 @@ fn a_comparison_renders_both_pass_by_pass() {
 }
 
 #[test]
+fn a_method_beside_itself_is_rendered_once() {
+    let (mut bench, quad) = (Bench::new(false), quad());
+    let mut twins = against_exact(request(&quad, 2));
+    twins.compare = twins.compare.map(|compare| Compare {
+        method: quad.settings.mapping.method,
+        ..compare
+    });
+    bench.worker.submit(twins);
+    let frame = bench.frame_where(|frame| frame.stats.converged);
+    let other = frame.other.expect("a second picture");
+    assert_eq!(other.pixels, frame.image.pixels);
+    let mut expected = vec![Event::Start(2)];
+    expected.extend(vec![Event::Pass(PassEnd::Complete); 2]);
+    assert_eq!(bench.events(), expected);
+    assert_eq!(bench.alive.load(Ordering::SeqCst), 1);
+}
+
+#[test]
 fn no_comparison_costs_nothing() {
     let (mut bench, quad) = (Bench::new(false), quad());
     let plain = request(&quad, 2);
