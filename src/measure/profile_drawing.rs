@@ -1,7 +1,7 @@
 //! A pixel's cut through the relief as a drawing: the picture that explains a method.
 
 use super::drawing::{Anchor, Drawing, Shape};
-use crate::render::{MethodProfile, ReliefProfile};
+use crate::render::{LightProfile, MethodProfile, ReliefProfile};
 
 /// Points that the table on the right takes.
 const TABLE: f32 = 330.0;
@@ -31,8 +31,8 @@ const COLORS: [[u8; 3]; 7] = [
 
 /// Draws a cut on a sheet of the given size in points, at least 640 × 320.
 ///
-/// On the left the relief with the base polygon, the view ray and where each method lands, the chosen one's
-/// samples on the ray; on the right what each costs and how far it is off. Heights are drawn to the scale of
+/// On the left the relief with the base polygon, the view ray, the ways to the lights and where each method lands, the
+/// chosen one's samples on the ray; on the right what each costs and how far it is off, and which lights are shadowed. Heights are drawn to the scale of
 /// lengths unless the ray is so flat that nothing would be seen; then the title says by how much they are
 /// stretched.
 #[must_use]
@@ -193,29 +193,32 @@ impl Sheet {
 
     fn lights(&self, profile: &ReliefProfile, shapes: &mut Vec<Shape>) {
         let from = self.at(profile.truth);
-        let facing = profile.lights.iter().filter(|light| !light.behind);
-        for (row, light) in (1_u8..).zip(facing) {
+        // How many names stand at the left end of the plot and at the right.
+        let mut rows = [0_u8; 2];
+        for light in facing(profile) {
             let dir = [light.dir[0] as f32, (-light.dir[1] * self.stretch) as f32];
             let end = self.to_edge(from, dir);
-            let (color, state) = if light.shadowed_by_relief {
-                (FAINT, "shadowed by the relief")
-            } else {
-                (INK, "not shadowed by the relief")
-            };
+            let (color, dashed) = light_ink(light);
             shapes.push(Shape::Line {
                 points: vec![from, end],
                 width: 1.0,
                 color,
-                dashed: light.shadowed_by_relief,
+                dashed,
             });
-            let right = end[0] > (self.left + self.right) * 0.5;
+            // On the side of the line that the view ray, from the left, is not on.
+            let right = end[0] > from[0];
+            let row = &mut rows[usize::from(right)];
             shapes.push(text(
-                [end[0], (end[1] + 12.0 * f32::from(row)).min(self.bottom)],
+                [
+                    end[0] + if right { -8.0 } else { 8.0 },
+                    (end[1] + 4.0 + 12.0 * f32::from(*row)).min(self.bottom),
+                ],
                 if right { Anchor::End } else { Anchor::Start },
                 10.0,
                 color,
-                &format!("{}: {state}", light.name),
+                &light.name,
             ));
+            *row += 1;
         }
     }
 
@@ -263,10 +266,16 @@ impl Sheet {
         } else {
             String::new()
         };
-        let below = format!(
-            "relief {depth:.1} texels deep; dots: samples of {}{stretched}",
-            profile.method
-        );
+        let sampled = profile
+            .methods
+            .iter()
+            .any(|method| method.method == profile.method && !method.samples.is_empty());
+        let dots = if sampled {
+            format!("; dots: samples of {}", profile.method)
+        } else {
+            String::new()
+        };
+        let below = format!("relief {depth:.1} texels deep{dots}{stretched}");
         shapes.push(text(
             [self.left, MARGIN + 22.0],
             Anchor::Start,
@@ -290,7 +299,8 @@ fn table(profile: &ReliefProfile, [width, height]: [f32; 2], shapes: &mut Vec<Sh
     let left = width - TABLE;
     let columns = [left + 18.0, left + 178.0, left + 248.0, width - MARGIN];
     let head = ["method", "texels off", "normal off", "steps"];
-    let row_height = ((height - HEAD - MARGIN) / (profile.methods.len() + 2) as f32).min(22.0);
+    let rows = profile.methods.len() + 2 + facing(profile).count();
+    let row_height = ((height - HEAD - MARGIN) / rows as f32).min(22.0);
     let mut y = HEAD;
     for (i, words) in head.into_iter().enumerate() {
         shapes.push(text([columns[i], y], anchor(i), 10.5, FAINT, words));
@@ -330,6 +340,37 @@ fn table(profile: &ReliefProfile, [width, height]: [f32; 2], shapes: &mut Vec<Sh
         INK,
         "the place that is really seen",
     ));
+    for light in facing(profile) {
+        y += row_height;
+        let (color, dashed) = light_ink(light);
+        shapes.push(Shape::Line {
+            points: vec![[left - 1.0, y - 4.0], [left + 13.0, y - 4.0]],
+            width: 1.0,
+            color,
+            dashed,
+        });
+        let state = if light.shadowed_by_relief {
+            "shadowed by the relief"
+        } else {
+            "not shadowed by the relief"
+        };
+        let words = format!("{}: {state}", light.name);
+        shapes.push(text([columns[0], y], Anchor::Start, 12.0, color, &words));
+    }
+}
+
+/// The lights that the surface faces.
+fn facing(profile: &ReliefProfile) -> impl Iterator<Item = &LightProfile> {
+    profile.lights.iter().filter(|light| !light.behind)
+}
+
+/// A light's colour, and whether its line is dashed.
+const fn light_ink(light: &LightProfile) -> ([u8; 3], bool) {
+    if light.shadowed_by_relief {
+        (FAINT, true)
+    } else {
+        (INK, false)
+    }
 }
 
 const fn anchor(column: usize) -> Anchor {

@@ -117,7 +117,13 @@ fn drawing_ui(ui: &mut Ui, drawing: &Drawing) {
                     Anchor::End => Align2::RIGHT_BOTTOM,
                 };
                 let font = FontId::proportional(*size);
-                painter.text(place(*at), align, text, font, rgb(*color));
+                let galley = painter.layout_no_wrap(text.clone(), font, rgb(*color));
+                // Drawings say where letters stand, not where the line below them ends.
+                let glyph = galley.rows.first().and_then(|row| row.glyphs.first());
+                let below = glyph.map_or(0.0, |glyph| glyph.font_height - glyph.font_ascent);
+                let foot = place(*at) + Vec2::new(0.0, below);
+                let rect = align.anchor_size(foot, galley.size());
+                painter.galley(rect.min, galley, rgb(*color));
             }
         }
     }
