@@ -158,6 +158,23 @@ fn line_ui(ui: &mut Ui, status: &Status<'_>) {
         };
         item_ui(ui, &text, color, legend.view.meaning());
     }
+    if status.exposure_ev != 0.0 {
+        item_ui(
+            ui,
+            &format!("{:+.1} EV", status.exposure_ev),
+            theme::ACCENT,
+            "Exposure",
+        );
+    }
+    if stats.counters.non_finite > 0 {
+        let text = format!("{} bad samples", stats.counters.non_finite);
+        item_ui(
+            ui,
+            &text,
+            theme::ERROR,
+            "Samples that were not finite and counted as black",
+        );
+    }
     let weak = theme::WEAK;
     let rate = rays_per_sec(stats) / 1e6;
     item_ui(
@@ -191,23 +208,6 @@ fn line_ui(ui: &mut Ui, status: &Status<'_>) {
         weak,
         "Triangles in the model's file",
     );
-    if status.exposure_ev != 0.0 {
-        item_ui(
-            ui,
-            &format!("{:+.1} EV", status.exposure_ev),
-            theme::ACCENT,
-            "Exposure",
-        );
-    }
-    if stats.counters.non_finite > 0 {
-        let text = format!("{} bad samples", stats.counters.non_finite);
-        item_ui(
-            ui,
-            &text,
-            theme::ERROR,
-            "Samples that were not finite and counted as black",
-        );
-    }
 }
 
 /// The last movement of the camera in words.

@@ -5,6 +5,7 @@ use egui::{Button, DragValue, RichText, Slider, SliderClamping, Ui, Vec2};
 use super::PanelContext;
 use crate::surface::mapping::{Derivative, Lookup, MappingSettings, Method, SearchSettings};
 use crate::viewer::document::Document;
+use crate::viewer::status::grouped;
 use crate::viewer::theme;
 use crate::viewer::widgets::{Caption, Number, choice_ui, number_ui, reset_ui, row_ui, slider_ui};
 
@@ -179,20 +180,26 @@ fn displacement_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
         .world_length(seams.largest_gap);
     let mut said = Vec::new();
     if flat > 0 {
+        let triangles = format!("{} triangles walked as flat reliefs", grouped(flat as u64));
         said.push(match displacement.sheets() {
-            0 => format!("{flat} triangles walked as flat reliefs"),
-            1 => format!("{flat} triangles walked as flat reliefs, one plane of them as a whole"),
-            n => format!("{flat} triangles walked as flat reliefs, {n} planes of them as a whole"),
+            0 => triangles,
+            1 => format!("{triangles}, one plane of them as a whole"),
+            n => format!("{triangles}, {n} planes of them as a whole"),
         });
     }
     if fine > 0 {
-        said.push(format!("{fine} triangles cut up where rays come"));
+        said.push(format!(
+            "{} triangles cut up where rays come",
+            grouped(fine as u64)
+        ));
     }
     if seams.edges > 0 {
-        said.push(format!(
-            "{} seam edges, heights up to {gap:.2e} apart",
-            seams.edges
-        ));
+        let edges = grouped(seams.edges as u64);
+        said.push(if gap > 0.0 {
+            format!("{edges} seam edges, heights up to {gap:.2e} apart")
+        } else {
+            format!("{edges} seam edges, heights the same on both sides")
+        });
     }
     let said = RichText::new(said.join("; ")).color(theme::WEAK);
     ui.add(egui::Label::new(said).wrap());
