@@ -16,10 +16,8 @@ use reliefscope::math::{LinearRgb, SrgbEncoder, hash, srgb8_from_linear, unit_in
 use reliefscope::measure::bench::grid_scene;
 use reliefscope::measure::bench::points::{Found, POINTS, PointWork};
 use reliefscope::render::{RayKind, RayList, rays_of};
+use reliefscope::surface::mapping::BoundHeight;
 use reliefscope::surface::mapping::relief::{ReliefField, ReliefRay, Walk};
-use reliefscope::surface::mapping::{
-    BoundHeight, BoundNormal, MappingSettings, MaterialMapping, MaterialMaps, Method,
-};
 use reliefscope::texture::{
     Addressing, Channel, ColorMap, Grid, HeightMap, HeightPyramid, NormalMap, RawImage, Samples,
     Wrap,
@@ -182,33 +180,6 @@ fn stored_normal(bencher: Bencher, how: How) {
 fn srgb_color(bencher: Bencher, how: How) {
     let map = ColorMap::from_image(&noise());
     at_points(bencher, PointWork::Color(&map), how);
-}
-
-/// Each method on a material that has every map.
-#[divan::bench(args = Method::ALL.map(Method::name))]
-fn mapping(bencher: Bencher, method: &str) {
-    let (heights, normals) = (
-        HeightMap::from_image(&noise(), Channel::R),
-        NormalMap::from_image(&noise()),
-    );
-    let addressing = Addressing {
-        scale: Vec2::new(1.0, -1.0),
-        offset: Vec2::new(0.0, 1.0),
-        wrap: Wrap::Repeat,
-    };
-    let normal = Some(BoundNormal::new(&normals, addressing));
-    let maps = MaterialMaps {
-        height: Some(BoundHeight::new(&heights, addressing, 0.02, -0.02)),
-        normal,
-        slope: normal,
-        ..MaterialMaps::default()
-    };
-    let settings = MappingSettings {
-        method: Method::from_name(method).expect("a name from the list"),
-        ..MappingSettings::default()
-    };
-    let work = PointWork::Mapping(MaterialMapping::choose(&settings, &maps));
-    at_points(bencher, work, How::Together);
 }
 
 /// Rays at 45° from the top of a relief of bricks to where they meet it.

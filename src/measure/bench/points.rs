@@ -4,8 +4,6 @@ use crate::geometry::simd::SimdLevel;
 use crate::math::lanes::Lanes;
 use crate::math::simd::{Kernel, Simd, SimdBase as _};
 use crate::math::{Real, V2, V3};
-use crate::surface::SurfaceInteraction;
-use crate::surface::mapping::MaterialMapping;
 use crate::texture::{ColorMap, HeightMap, NormalMap, Wrap};
 
 /// Points that are worked on at a time: a tile.
@@ -16,7 +14,6 @@ pub type Found = [Lanes<f32, POINTS>; 3];
 
 /// What is done at a point.
 #[derive(Debug, Clone, Copy)]
-#[expect(clippy::large_enum_variant, reason = "a benchmark holds one at a time")]
 pub enum PointWork<'a> {
     /// Height and slope.
     Height(&'a HeightMap),
@@ -24,8 +21,6 @@ pub enum PointWork<'a> {
     Normal(&'a NormalMap),
     /// Linear colour.
     Color(&'a ColorMap),
-    /// The normal that a material's maps leave on a flat surface, seen at a slant.
-    Mapping(MaterialMapping<'a>),
 }
 
 impl PointWork<'_> {
@@ -41,11 +36,6 @@ impl PointWork<'_> {
             Self::Color(map) => {
                 let color = map.sample(st, Wrap::Repeat);
                 V3::new(color.r, color.g, color.b)
-            }
-            Self::Mapping(mapping) => {
-                let mut surface = slanted(st);
-                mapping.apply(&mut surface, st.x.eq(st.x), None);
-                surface.n_shade
             }
         }
     }
@@ -87,28 +77,5 @@ impl Kernel for ByLanes<'_> {
             y.set(group, found.y);
             z.set(group, found.z);
         }
-    }
-}
-
-/// A point of the plane z = 0, textured once per unit, seen from (0.6, 0, 0.8).
-#[inline(always)]
-fn slanted<F: Real>(uv: V2<F>) -> SurfaceInteraction<F> {
-    let like = uv.x;
-    let splat = |x: f32, y: f32, z: f32| V3::new(like.splat(x), like.splat(y), like.splat(z));
-    SurfaceInteraction {
-        p: splat(0.0, 0.0, 0.0),
-        p_error: splat(0.0, 0.0, 0.0),
-        n_geo: splat(0.0, 0.0, 1.0),
-        n_shade: splat(0.0, 0.0, 1.0),
-        n_smooth: splat(0.0, 0.0, 1.0),
-        wo: splat(0.6, 0.0, 0.8),
-        uv,
-        grad_u: splat(1.0, 0.0, 0.0),
-        grad_v: splat(0.0, 1.0, 0.0),
-        dp_du: splat(1.0, 0.0, 0.0),
-        handedness: like.splat(1.0),
-        footprint: like,
-        sunk: like.splat(0.0),
-        steps: like.splat(0.0),
     }
 }
