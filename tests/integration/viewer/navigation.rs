@@ -1,6 +1,7 @@
 //! Mouse and keys in the picture.
 
-use egui::{Key, Modifiers, PointerButton, pos2, vec2};
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, PointerButton, Pos2, Rect, pos2, vec2};
 use egui_kittest::kittest::Queryable;
 use reliefscope::shading::LightKind;
 use reliefscope::surface::mapping::Method;
@@ -152,6 +153,26 @@ fn p_i_and_f1_switch() {
     assert!(driver.app().state().help && driver.has("Zoom to the cursor"));
     driver.key(Key::Questionmark);
     assert!(!driver.app().state().help);
+}
+
+#[test]
+fn the_help_fits_the_window() {
+    let mut driver = Driver::reference();
+    for size in [vec2(480.0, 320.0), vec2(1280.0, 720.0)] {
+        driver.harness.set_size(size);
+        driver.key(Key::F1);
+        driver.harness.run_steps(4);
+        let window = Rect::from_min_size(Pos2::ZERO, size);
+        let title = driver.node(Role::Window, "Keys and mouse").rect();
+        assert!(window.contains_rect(title), "{title:?} in {size:?}");
+        if size.x > 1000.0 {
+            for label in ["Mouse", "Orbit", "Keys and mouse", "Displacement"] {
+                let row = driver.node(Role::Label, label).rect();
+                assert!(title.contains_rect(row), "{label}: {row:?} in {title:?}");
+            }
+        }
+        driver.key(Key::F1);
+    }
 }
 
 #[test]
