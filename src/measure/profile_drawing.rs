@@ -32,9 +32,9 @@ const COLORS: [[u8; 3]; 7] = [
 /// Draws a cut on a sheet of the given size in points, at least 640 × 320.
 ///
 /// On the left the relief with the base polygon, the view ray, the ways to the lights and where each method lands, the
-/// chosen one's samples on the ray; on the right what each costs and how far it is off, and which lights are shadowed. Heights are drawn to the scale of
-/// lengths unless the ray is so flat that nothing would be seen; then the title says by how much they are
-/// stretched.
+/// chosen one's samples on the ray; on the right what each costs and how far it is off, and which lights are shadowed.
+/// Heights are drawn to the scale of lengths unless the ray is so flat that nothing would be seen; then the title says by
+/// how much they are stretched.
 #[must_use]
 pub fn draw_profile(profile: &ReliefProfile, size: [f32; 2]) -> Drawing {
     let size = [size[0].max(640.0), size[1].max(320.0)];
