@@ -125,33 +125,50 @@ pub fn panel_ui(ctx: &egui::Context, window: Rect, bottom: f32, panel: &mut Pane
 
 fn header_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
-        ui.menu_button("Menu", |ui| menu_ui(ui, panel));
+        ui.menu_button("Menu", |ui| {
+            // All of it can be reached in a low window, too.
+            let room = ui.ctx().content_rect().height() - 2.0 * MARGIN;
+            let menu = ScrollArea::vertical()
+                .max_height(room)
+                .min_scrolled_height(room);
+            menu.show(ui, |ui| menu_ui(ui, panel));
+        });
         let name = RichText::new(&panel.doc.scene.name).strong();
         ui.add(egui::Label::new(name).truncate());
     });
 }
 
 fn menu_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
-    let table = commands::table();
     for (i, group) in Group::ALL.into_iter().enumerate() {
         if i > 0 {
             ui.separator();
         }
-        for row in table.iter().filter(|row| row.group == group) {
-            let keys = commands::keys_text(ui.ctx(), row);
-            let mark = if is_on(panel, row.command) {
-                "• "
-            } else {
-                ""
-            };
-            let text = format!("{mark}{}", row.label);
-            if ui
-                .add(egui::Button::new(text).shortcut_text(keys))
-                .clicked()
-            {
-                panel.actions.push(Action::Run(row.command));
-                ui.close();
+        match group {
+            Group::Method => {
+                ui.menu_button(group.label(), |ui| commands_ui(ui, panel, group));
             }
+            _ => commands_ui(ui, panel, group),
+        }
+    }
+}
+
+/// The commands of a group in a menu.
+fn commands_ui(ui: &mut Ui, panel: &mut PanelContext<'_>, group: Group) {
+    let table = commands::table();
+    for row in table.iter().filter(|row| row.group == group) {
+        let keys = commands::keys_text(ui.ctx(), row);
+        let mark = if is_on(panel, row.command) {
+            "• "
+        } else {
+            ""
+        };
+        let text = format!("{mark}{}", row.label);
+        if ui
+            .add(egui::Button::new(text).shortcut_text(keys))
+            .clicked()
+        {
+            panel.actions.push(Action::Run(row.command));
+            ui.close();
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use egui::accesskit::Role;
+use egui::{Pos2, Rect, vec2};
 use glam::DVec3;
 use reliefscope::scene::load::LoadOptions;
 use reliefscope::scene::{ShadingModel, TextureFilter, open};
@@ -307,4 +308,28 @@ fn the_menu_runs_commands() {
     driver.button("Menu");
     driver.click(Role::Button, "Darker Shift+E");
     assert!(driver.doc().display.exposure_ev < 0.0);
+    driver.button("Menu");
+    driver.button("Method");
+    driver.click(Role::Button, "Slope map 3");
+    assert_eq!(driver.settings().mapping.method, Method::Slope);
+}
+
+#[test]
+fn the_menu_fits_the_window() {
+    let mut driver = Driver::reference();
+    let size = vec2(1280.0, 720.0);
+    driver.harness.set_size(size);
+    driver.button("Menu");
+    driver.button("Method");
+    driver.harness.run_steps(4);
+    let window = Rect::from_min_size(Pos2::ZERO, size);
+    for (role, label) in [
+        (Role::Button, "Open… Ctrl+O"),
+        (Role::Button, "Keys and mouse F1, ?"),
+        (Role::Button, "None 1"),
+        (Role::Button, "Displacement Backslash"),
+    ] {
+        let row = driver.node(role, label).rect();
+        assert!(window.contains_rect(row), "{label}: {row:?}");
+    }
 }
