@@ -205,7 +205,7 @@ impl Sheet {
                 color,
                 dashed,
             });
-            // On the side of the line that the view ray, from the left, is not on.
+            // Within the plot, beside the end of the line.
             let right = end[0] > from[0];
             let row = &mut rows[usize::from(right)];
             shapes.push(text(

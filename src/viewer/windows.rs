@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, FontId, Grid, Id, LayerId, Order, Rect, ScrollArea, Ui, Window};
 
-use super::commands::{self, Group};
+use super::commands::{self, CommandInfo, Group};
 use super::theme;
 
 /// Room for the title and the margins of a small window, points.
@@ -41,12 +41,13 @@ fn columns_ui(ui: &mut Ui) {
             ui.end_row();
         }
     });
+    let table = commands::table();
     let (methods, others): (Vec<_>, Vec<_>) = Group::ALL
         .into_iter()
         .partition(|group| *group == Group::Method);
     for (name, groups) in [("keys", others), ("methods", methods)] {
         ui.add_space(16.0);
-        two_columns(name).show(ui, |ui| keys_ui(ui, &groups));
+        two_columns(name).show(ui, |ui| keys_ui(ui, &table, &groups));
     }
 }
 
@@ -56,8 +57,7 @@ pub fn escaped(ctx: &egui::Context) -> bool {
 }
 
 /// The keys of groups of commands.
-fn keys_ui(ui: &mut Ui, groups: &[Group]) {
-    let table = commands::table();
+fn keys_ui(ui: &mut Ui, table: &[CommandInfo], groups: &[Group]) {
     for group in groups {
         ui.strong(group.label());
         ui.end_row();

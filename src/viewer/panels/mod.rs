@@ -18,7 +18,7 @@ use std::path::PathBuf;
 
 use egui::{Align2, Area, CollapsingHeader, Id, Order, Rect, RichText, ScrollArea, Ui, Vec2};
 
-use super::commands::{self, Command, Group};
+use super::commands::{self, Command, CommandInfo, Group};
 use super::dialogs::Purpose;
 use super::document::Document;
 use super::preferences::Preferences;
@@ -139,23 +139,28 @@ fn header_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
 }
 
 fn menu_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
+    let table = commands::table();
     for (i, group) in Group::ALL.into_iter().enumerate() {
+        let rows = table.iter().filter(|row| row.group == group);
         if i > 0 {
             ui.separator();
         }
         match group {
             Group::Method => {
-                ui.menu_button(group.label(), |ui| commands_ui(ui, panel, group));
+                ui.menu_button(group.label(), |ui| commands_ui(ui, panel, rows));
             }
-            _ => commands_ui(ui, panel, group),
+            _ => commands_ui(ui, panel, rows),
         }
     }
 }
 
-/// The commands of a group in a menu.
-fn commands_ui(ui: &mut Ui, panel: &mut PanelContext<'_>, group: Group) {
-    let table = commands::table();
-    for row in table.iter().filter(|row| row.group == group) {
+/// Commands in a menu.
+fn commands_ui<'a>(
+    ui: &mut Ui,
+    panel: &mut PanelContext<'_>,
+    rows: impl Iterator<Item = &'a CommandInfo>,
+) {
+    for row in rows {
         let keys = commands::keys_text(ui.ctx(), row);
         let mark = if is_on(panel, row.command) {
             "• "

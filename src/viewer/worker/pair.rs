@@ -181,15 +181,18 @@ impl Pair {
                 });
             }
         }
-        let mut encoded = |renderer: &dyn PassRenderer| {
-            let mut pixels = buffer();
+        let encoded = |renderer: &dyn PassRenderer, mut pixels: Vec<Color32>| {
             renderer.encode_shown_into(exposure_ev, bytemuck::cast_slice_mut(&mut pixels));
             pixels
         };
-        let mut first = encoded(&*self.first);
+        let mut first = encoded(&*self.first, buffer());
         let mut other = request.compare.map(|_| match &self.second {
-            Some(second) => encoded(&**second),
-            None => encoded(&*self.first),
+            Some(second) => encoded(&**second, buffer()),
+            None => {
+                let mut twin = buffer();
+                twin.copy_from_slice(&first);
+                twin
+            }
         });
         let mut records = self.records.each_ref().map(|known| {
             let known = known.as_ref().filter(|_| is_recorded);
