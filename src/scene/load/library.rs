@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::lookup::{Found, describe_folders, find_file, text_from_bytes};
+use super::lookup::{Found, describe_folders, find_as_written, find_file, text_from_bytes};
 use super::materials::LibraryRef;
 use super::mtl::{MAX_MATERIALS, MtlMaterial, parse_library, without_comment};
 use crate::scene::LoadWarning;
@@ -161,8 +161,8 @@ fn files_of(library: &LibraryRef, warnings: &mut Vec<LoadWarning>) -> Vec<PathBu
         warn("mtllib names no library".to_owned());
         return Vec::new();
     }
-    if let Some(found) = find_file(whole, &[folder]).filter(|f| f.fallback.is_none()) {
-        return vec![found.path];
+    if let Some(path) = find_as_written(whole, &[folder]) {
+        return vec![path];
     }
     let mut files = Vec::new();
     for name in several_names(whole).into_iter().take(MAX_LIBRARIES) {

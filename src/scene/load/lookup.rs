@@ -8,6 +8,9 @@ use super::map_statement::unquoted;
 
 /// Folders beside a library that commonly hold its pictures.
 const USUAL_FOLDERS: [&str; 6] = ["textures", "texture", "tex", "maps", "images", "img"];
+/// No longer name is looked for, in bytes: the longest path that Linux opens. What is longer is damage,
+/// and each of its thousands of ends would be a question to the file system.
+const LONGEST_NAME: usize = 4096;
 
 /// A file and how it was found.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -31,17 +34,13 @@ pub(super) fn text_from_bytes(bytes: &[u8]) -> String {
 /// Order: as written; in any letter case; then the end of the path, shorter and shorter down to the base
 /// name, beside the library and in the usual picture folders there. A found path is a plain file.
 pub(super) fn find_file(name: &[u8], folders: &[&Path]) -> Option<Found> {
-    let spellings = spellings(unquoted(name));
-    let exact = spellings
-        .iter()
-        .flat_map(|s| folders.iter().map(move |f| f.join(s)))
-        .find(|p| p.is_file());
-    if let Some(path) = exact {
+    if let Some(path) = find_as_written(name, folders) {
         return Some(Found {
             path,
             fallback: None,
         });
     }
+    let spellings = spellings(unquoted(name));
     for (spelling, folder) in pairs(&spellings, folders) {
         if let Some(path) = ignoring_case(folder, spelling) {
             let fallback = Some("in other letter case");
@@ -55,6 +54,14 @@ pub(super) fn find_file(name: &[u8], folders: &[&Path]) -> Option<Found> {
         }
     }
     None
+}
+
+/// The first step of [`find_file`] alone: `name` as written (with either separator, without quotes).
+pub(super) fn find_as_written(name: &[u8], folders: &[&Path]) -> Option<PathBuf> {
+    spellings(unquoted(name))
+        .iter()
+        .flat_map(|s| folders.iter().map(move |f| f.join(s)))
+        .find(|p| p.is_file())
 }
 
 /// The folders in which [`find_file`] looks, for messages.
@@ -78,8 +85,11 @@ fn pairs<'a>(
         .flat_map(move |s| folders.iter().map(move |&f| (s.as_path(), f)))
 }
 
-/// The paths that the bytes may mean, likeliest first.
+/// The paths that the bytes may mean, likeliest first; none for a name beyond [`LONGEST_NAME`].
 fn spellings(name: &[u8]) -> Vec<PathBuf> {
+    if name.len() > LONGEST_NAME {
+        return Vec::new();
+    }
     let slashed: Vec<u8> = name
         .iter()
         .map(|&b| if b == b'\\' { b'/' } else { b })

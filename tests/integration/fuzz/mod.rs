@@ -29,7 +29,8 @@ use mutate::mutate;
 const CASES: usize = 4_000;
 /// A hang, on a machine however busy.
 const HANG: Duration = Duration::from_secs(20);
-/// What takes longer is told, and tried again alone where the number of cases was asked for: it must not again.
+/// What takes longer is told, and kept and timed again alone where the number of cases was asked for. It is
+/// for a reader to judge: no test of ours fails for how busy or old a machine is.
 const SLOW: Duration = Duration::from_secs(2);
 /// Small, so that a case that is let through stays quick.
 const LIMITS: PictureLimits = PictureLimits {
@@ -181,8 +182,8 @@ fn work(corpus: &[Entry], seed: usize, end: usize, next: &AtomicUsize, tally: &M
     }
 }
 
-/// How long a case takes with nothing beside it, at the best of three.
-fn alone(corpus: &[Entry], seed: usize, number: usize) -> Duration {
+/// Keeps a case and tells how long it takes with nothing beside it, at the best of three.
+fn alone(corpus: &[Entry], seed: usize, number: usize) {
     let (format, bytes) = case(corpus, seed, number);
     let mut bench = Bench::new();
     let times = (0..3).map(|_| {
@@ -193,7 +194,6 @@ fn alone(corpus: &[Entry], seed: usize, number: usize) -> Duration {
     let least = times.min().unwrap_or_default();
     let kept = keep(format, number, &bytes);
     eprintln!("case {number} alone: {least:?}, {}", kept.display());
-    least
 }
 
 #[test]
@@ -215,17 +215,14 @@ fn mutated_files_are_read_or_refused() {
             scope.spawn(|| work(&corpus, seed, from + cases, &next, &tally));
         }
     });
-    let mut tally = tally.into_inner().expect("nobody panics with it");
+    let tally = tally.into_inner().expect("nobody panics with it");
     eprintln!(
         "seed {seed}: {cases} cases, {} read, {} refused, {} decoder crashes caught, slowest {:?} (case {})",
         tally.read, tally.refused, tally.crashed, tally.slowest.0, tally.slowest.1
     );
     if cases != CASES {
-        // An ordinary run shares its machine with other tests, and asserts no time but that of a hang.
-        for number in std::mem::take(&mut tally.slow) {
-            if alone(&corpus, seed, number) > SLOW {
-                tally.failures.push(format!("case {number} is slow"));
-            }
+        for number in tally.slow {
+            alone(&corpus, seed, number);
         }
     }
     assert!(

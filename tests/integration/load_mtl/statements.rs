@@ -204,6 +204,20 @@ fn pictures_are_found_in_odd_places() {
     }
 }
 
+/// A line of damage, read as a path of many parts, once took the square of their number.
+#[test]
+fn a_name_that_no_system_opens_is_not_looked_for() {
+    for (parts, found) in [(100, true), (1_000_000, false)] {
+        let name = "1/".repeat(parts);
+        let fixture = Fixture::with_library(&format!("newmtl m\nmap_Kd {name}a.png\n"));
+        fixture.grey("a.png");
+        let set = fixture.load(&["m"]);
+        let text = if found { "not where" } else { "not found" };
+        assert_one_warning(&set, &["m.mtl:2", text]);
+        assert_eq!(set.images.len(), usize::from(found), "{parts} parts");
+    }
+}
+
 #[test]
 fn broken_and_missing_pictures_leave_the_colour() {
     let fixture = Fixture::with_library(
