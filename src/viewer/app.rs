@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use egui::{Rect, ViewportCommand, ViewportId};
+use egui::{LayerId, Rect, ViewportCommand, ViewportId};
 
 use super::commands::{self, Command};
 use super::dialogs::{Dialogs, PICTURES, Purpose};
@@ -16,6 +16,7 @@ use super::panels::{self, Action, PanelContext, Place, UiState};
 use super::picking::Projection;
 use super::preferences::Preferences;
 use super::status::{self, Progress, Status};
+use super::still::Still;
 use super::story::{Story, story_ui};
 use super::toasts::Toasts;
 use super::viewport::{self, Framebuffer, Side, ViewportClick};
@@ -43,6 +44,7 @@ pub struct ViewerApp {
     framebuffer: Framebuffer,
     toasts: Toasts,
     pacing: Pacing,
+    still_panel: Still,
     shown: Meter,
     passes: Meter,
     sent: Option<RenderRequest>,
@@ -90,6 +92,7 @@ impl ViewerApp {
             framebuffer: Framebuffer::default(),
             toasts: Toasts::default(),
             pacing: Pacing::new(creation.gl.as_deref()),
+            still_panel: Still::default(),
             shown: Meter::default(),
             passes: Meter::default(),
             sent: None,
@@ -496,8 +499,10 @@ impl ViewerApp {
         are_painted
     }
 
-    fn panel_ui(&mut self, ctx: &egui::Context, window: Rect) {
+    /// Returns the panel's layer and what it hides, if it is shown.
+    fn panel_ui(&mut self, ctx: &egui::Context, window: Rect) -> Option<(LayerId, Rect)> {
         let mut actions = Vec::new();
+        let mut place = None;
         self.state.stats = *self.framebuffer.stats();
         if let Some(doc) = self.doc.as_mut().filter(|_| self.preferences.panel) {
             let mut panel = PanelContext {
@@ -506,12 +511,13 @@ impl ViewerApp {
                 preferences: &mut self.preferences,
                 actions: &mut actions,
             };
-            panels::panel_ui(ctx, window, status::HEIGHT, &mut panel);
+            place = Some(panels::panel_ui(ctx, window, status::HEIGHT, &mut panel));
         }
         self.state.trade.end_frame();
         for action in actions {
             self.act(ctx, action);
         }
+        place
     }
 
     fn status_ui(&mut self, ctx: &egui::Context, window: Rect) {
@@ -657,17 +663,21 @@ impl eframe::App for ViewerApp {
         let panes = self.panes(window);
         self.size = viewport::framebuffer_size(&ctx, panes[0]);
         let are_painted = self.viewport_ui(ui, window, panes);
-        self.panel_ui(&ctx, window);
+        let panel = self.panel_ui(&ctx, window);
         self.take_nan_back();
         self.submit();
         let is_outdated = self.framebuffer.stats().generation != self.worker.generation();
         self.pacing.wait(&self.worker, is_outdated);
         self.take_frame(&ctx);
         if !are_painted {
-            self.framebuffer.paint_in(ui, picture, window);
+            let hidden = panel.map(|(_, hidden)| hidden);
+            self.framebuffer.paint_in(ui, picture, window, hidden);
         }
         self.status_ui(&ctx, window);
         self.overlays_ui(&ctx, window);
+        if let Some((layer, hidden)) = panel.filter(|_| self.pacing.is_software()) {
+            self.still_panel.settle(&ctx, layer, hidden, is_outdated);
+        }
         let now = ctx.input(|input| input.time);
         if self.doc.as_mut().is_some_and(|doc| doc.remember(now)) {
             ctx.request_repaint_after(Duration::from_millis(450));

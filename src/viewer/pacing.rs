@@ -64,6 +64,12 @@ impl Pacing {
         }
     }
 
+    /// Whether the processor draws the window.
+    #[must_use]
+    pub const fn is_software(&self) -> bool {
+        self.software
+    }
+
     /// When this frame took its input, seconds.
     #[must_use]
     pub fn began_secs(&self) -> f64 {

@@ -17,10 +17,15 @@ pub const BACKDROP: Color32 = Color32::from_rgb(13, 14, 16);
 
 const RADIUS: CornerRadius = CornerRadius::same(4);
 
-/// Behind panel, status line and messages: the picture shimmers through.
+/// Behind status line and messages: the picture shimmers through.
 pub fn glass() -> egui::Frame {
+    sheet().fill(Color32::from_rgba_unmultiplied(20, 21, 24, 236))
+}
+
+/// Behind the panel, whose rows are read against it: opaque, so that it is the same over any picture.
+pub fn sheet() -> egui::Frame {
     egui::Frame::new()
-        .fill(Color32::from_rgba_unmultiplied(20, 21, 24, 236))
+        .fill(Color32::from_rgb(20, 21, 24))
         .stroke(Stroke::new(1.0, Color32::from_rgb(46, 48, 54)))
         .corner_radius(CornerRadius::same(6))
         .inner_margin(Margin::same(10))

@@ -1,8 +1,9 @@
 //! The picture fills the window; the mouse moves the camera in it.
 
 use egui::{
-    ColorImage, Event, Modifiers, MouseWheelUnit, Painter, PointerButton, Rect, Response, Role,
-    Sense, Shape, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, layers::ShapeIdx, pos2,
+    ColorImage, Event, Mesh, Modifiers, MouseWheelUnit, Painter, PointerButton, Pos2, Rect,
+    Response, Role, Sense, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, layers::ShapeIdx,
+    pos2,
 };
 use std::sync::Arc;
 
@@ -139,11 +140,18 @@ impl Framebuffer {
         }
     }
 
-    /// Paints the first picture over the rectangle, in the place kept for it.
-    pub fn paint_in(&self, ui: &Ui, place: ShapeIdx, rect: Rect) {
+    /// Paints the first picture over the rectangle, in the place kept for it, but for what is `hidden`: where the
+    /// processor draws the window, every pixel counts.
+    pub fn paint_in(&self, ui: &Ui, place: ShapeIdx, rect: Rect, hidden: Option<Rect>) {
         if let (Some(texture), Some(image)) = (&self.first.texture, &self.first.shown) {
-            let shape = Shape::image(texture.id(), rect, self.uv(image), egui::Color32::WHITE);
-            ui.painter().set(place, shape);
+            let uv = self.uv(image);
+            let mut mesh = Mesh::with_texture(texture.id());
+            for part in around(rect, hidden.unwrap_or(Rect::NOTHING)) {
+                let corner = |at: Pos2| uv.lerp_inside((at - rect.min) / rect.size());
+                let part_uv = Rect::from_min_max(corner(part.min), corner(part.max));
+                mesh.add_rect_with_uv(part, part_uv, egui::Color32::WHITE);
+            }
+            ui.painter().set(place, mesh);
         }
     }
 
@@ -167,6 +175,23 @@ pub fn framebuffer_size(ctx: &egui::Context, rect: Rect) -> [u32; 2] {
     let size = (rect.size() * ctx.pixels_per_point()).round();
     let fit = (most / size.x.max(size.y).max(1.0)).min(1.0);
     [size.x, size.y].map(|n| ((n * fit) as u32).max(1))
+}
+
+/// What of a rectangle is outside another one: at most four rectangles.
+fn around(rect: Rect, hidden: Rect) -> impl Iterator<Item = Rect> {
+    let hole = rect.intersect(hidden);
+    let parts = if hole.is_positive() {
+        let (left, right) = (pos2(rect.min.x, hole.min.y), pos2(hole.max.x, hole.min.y));
+        [
+            Rect::from_min_max(rect.min, pos2(rect.max.x, hole.min.y)),
+            Rect::from_min_max(left, pos2(hole.min.x, hole.max.y)),
+            Rect::from_min_max(right, pos2(rect.max.x, hole.max.y)),
+            Rect::from_min_max(pos2(rect.min.x, hole.max.y), rect.max),
+        ]
+    } else {
+        [rect, Rect::NOTHING, Rect::NOTHING, Rect::NOTHING]
+    };
+    parts.into_iter().filter(Rect::is_positive)
 }
 
 /// What clicks in the picture asked for.

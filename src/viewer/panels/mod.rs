@@ -16,7 +16,9 @@ mod trade;
 
 use std::path::PathBuf;
 
-use egui::{Align2, Area, CollapsingHeader, Id, Order, Rect, RichText, ScrollArea, Ui, Vec2};
+use egui::{
+    Align2, Area, CollapsingHeader, Id, LayerId, Order, Rect, RichText, ScrollArea, Ui, Vec2,
+};
 
 use super::commands::{self, Command, CommandInfo, Group};
 use super::dialogs::Purpose;
@@ -31,6 +33,9 @@ pub use extremes::Place;
 const WIDTH: f32 = 316.0;
 /// Distance from the window's edge, points.
 const MARGIN: f32 = 10.0;
+
+/// The panel hides nothing nearer to its edge than this: its corners are round. Points.
+const CORNER: f32 = 8.0;
 
 /// What the window shows besides the document.
 #[derive(Debug, Default)]
@@ -96,20 +101,28 @@ fn content_width(window: Rect) -> f32 {
 
 /// Points that the panel takes of the window's right side.
 pub fn covered_width(window: Rect) -> f32 {
-    let frame = theme::glass().total_margin().sum().x;
+    let frame = theme::sheet().total_margin().sum().x;
     content_width(window) + frame + 2.0 * MARGIN
 }
 
-/// Draws the panel into the window's rectangle, above `bottom` points of status line.
-pub fn panel_ui(ctx: &egui::Context, window: Rect, bottom: f32, panel: &mut PanelContext<'_>) {
+/// Draws the panel into the window's rectangle, above `bottom` points of status line; returns its layer and the
+/// part of the window that it hides.
+pub fn panel_ui(
+    ctx: &egui::Context,
+    window: Rect,
+    bottom: f32,
+    panel: &mut PanelContext<'_>,
+) -> (LayerId, Rect) {
     let width = content_width(window);
     let height = (window.height() - bottom - 2.0 * MARGIN - 22.0).max(80.0);
-    Area::new(Id::unique("panel"))
+    let area = Area::new(Id::unique("panel"))
         .anchor(Align2::RIGHT_TOP, Vec2::new(-MARGIN, MARGIN))
         .order(Order::Middle)
         .constrain(false)
+        // It hides what is under it from the first frame on.
+        .fade_in(false)
         .show(ctx, |ui| {
-            theme::glass().show(ui, |ui| {
+            theme::sheet().show(ui, |ui| {
                 ui.set_width(width);
                 // The area would keep the height that its content had in the picture before.
                 ui.set_max_height(height);
@@ -121,6 +134,7 @@ pub fn panel_ui(ctx: &egui::Context, window: Rect, bottom: f32, panel: &mut Pane
                     .show(ui, |ui| sections_ui(ui, panel));
             });
         });
+    (area.response.layer_id, area.response.rect.shrink(CORNER))
 }
 
 fn header_ui(ui: &mut Ui, panel: &mut PanelContext<'_>) {
