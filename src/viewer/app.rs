@@ -675,8 +675,10 @@ impl eframe::App for ViewerApp {
         }
         self.status_ui(&ctx, window);
         self.overlays_ui(&ctx, window);
-        if let Some((layer, hidden)) = panel.filter(|_| self.pacing.is_software()) {
-            self.still_panel.settle(&ctx, layer, hidden, is_outdated);
+        match panel.filter(|_| self.pacing.is_software()) {
+            Some((layer, hidden)) => self.still_panel.settle(&ctx, layer, hidden, is_outdated),
+            // Pixels that were asked for would come without it.
+            None => self.still_panel = Still::default(),
         }
         let now = ctx.input(|input| input.time);
         if self.doc.as_mut().is_some_and(|doc| doc.remember(now)) {
