@@ -33,7 +33,7 @@ mod picking;
 mod preferences;
 pub mod status;
 mod still;
-mod story;
+pub mod story;
 mod theme;
 mod toasts;
 pub mod trade;

@@ -14,6 +14,8 @@ use egui::{
     TextureOptions, Vec2, pos2,
 };
 
+use super::viewport::around;
+
 /// Frames that must draw the same before the pixels are asked for: reading them takes some milliseconds.
 const PATIENCE: u32 = 3;
 
@@ -160,13 +162,6 @@ impl Still {
 /// Puts a texture in the place of a layer's shapes, which stay at its edge.
 fn replace(ctx: &Context, layer: LayerId, held: &Drawn, texture: TextureId) {
     let inner = held.rect();
-    let far = Rect::EVERYTHING;
-    let edges = [
-        Rect::from_min_max(far.min, pos2(far.max.x, inner.min.y)),
-        Rect::from_min_max(pos2(far.min.x, inner.max.y), far.max),
-        Rect::from_min_max(pos2(far.min.x, inner.min.y), pos2(inner.min.x, inner.max.y)),
-        Rect::from_min_max(pos2(inner.max.x, inner.min.y), pos2(far.max.x, inner.max.y)),
-    ];
     let uv = Rect::from_min_size(Pos2::ZERO, Vec2::splat(1.0));
     ctx.graphics_mut(|graphics| {
         let Some(list) = graphics.get_mut(layer) else {
@@ -176,7 +171,7 @@ fn replace(ctx: &Context, layer: LayerId, held: &Drawn, texture: TextureId) {
             list.reset_shape(ShapeIdx(index));
         }
         list.add(inner, Shape::image(texture, inner, uv, Color32::WHITE));
-        for edge in edges {
+        for edge in around(Rect::EVERYTHING, inner) {
             for entry in held.shapes.iter().filter(|entry| touches(entry, edge)) {
                 list.add(entry.clip_rect.intersect(edge), entry.shape.clone());
             }

@@ -178,7 +178,7 @@ pub fn framebuffer_size(ctx: &egui::Context, rect: Rect) -> [u32; 2] {
 }
 
 /// What of a rectangle is outside another one: at most four rectangles.
-fn around(rect: Rect, hidden: Rect) -> impl Iterator<Item = Rect> {
+pub fn around(rect: Rect, hidden: Rect) -> impl Iterator<Item = Rect> {
     let hole = rect.intersect(hidden);
     let parts = if hole.is_positive() {
         let (left, right) = (pos2(rect.min.x, hole.min.y), pos2(hole.max.x, hole.min.y));

@@ -34,13 +34,13 @@ pub(super) fn text_from_bytes(bytes: &[u8]) -> String {
 /// Order: as written; in any letter case; then the end of the path, shorter and shorter down to the base
 /// name, beside the library and in the usual picture folders there. A found path is a plain file.
 pub(super) fn find_file(name: &[u8], folders: &[&Path]) -> Option<Found> {
-    if let Some(path) = find_as_written(name, folders) {
+    let spellings = spellings(unquoted(name));
+    if let Some(path) = as_written(&spellings, folders) {
         return Some(Found {
             path,
             fallback: None,
         });
     }
-    let spellings = spellings(unquoted(name));
     for (spelling, folder) in pairs(&spellings, folders) {
         if let Some(path) = ignoring_case(folder, spelling) {
             let fallback = Some("in other letter case");
@@ -58,10 +58,13 @@ pub(super) fn find_file(name: &[u8], folders: &[&Path]) -> Option<Found> {
 
 /// The first step of [`find_file`] alone: `name` as written (with either separator, without quotes).
 pub(super) fn find_as_written(name: &[u8], folders: &[&Path]) -> Option<PathBuf> {
-    spellings(unquoted(name))
-        .iter()
-        .flat_map(|s| folders.iter().map(move |f| f.join(s)))
-        .find(|p| p.is_file())
+    as_written(&spellings(unquoted(name)), folders)
+}
+
+fn as_written(spellings: &[PathBuf], folders: &[&Path]) -> Option<PathBuf> {
+    pairs(spellings, folders)
+        .map(|(spelling, folder)| folder.join(spelling))
+        .find(|path| path.is_file())
 }
 
 /// The folders in which [`find_file`] looks, for messages.
