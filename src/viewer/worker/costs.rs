@@ -21,21 +21,24 @@ impl Costs {
         }
     }
 
-    /// What a pass should take: as measured, or else as the next strides that were measured suggest.
+    /// What a pass should take: as measured; else, between two strides that were measured, as if every halving multiplied it
+    /// by the same; else at most so much as the nearest one says.
     #[must_use]
     pub fn expected(&self, stride: u32) -> Option<f32> {
-        let place = stride.trailing_zeros() as usize;
-        let factor = |of: f32, steps: usize| of.powi(steps as i32);
-        let from_finer = (0..=place.min(3)).rev().find_map(|finer| {
-            let steps = place - finer;
-            self.0[finer].map(|millis| millis * factor(OF_FINER, steps))
-        });
-        from_finer.or_else(|| {
-            (place + 1..4).find_map(|coarser| {
-                let steps = coarser - place;
-                self.0[coarser].map(|millis| millis * factor(OF_COARSER, steps))
-            })
-        })
+        let place = (stride.trailing_zeros() as usize).min(3);
+        let measured = |place: usize| self.0[place].map(|millis| (place, millis));
+        let finer = (0..=place).rev().find_map(measured);
+        let coarser = (place..4).find_map(measured);
+        let steps = |from: usize| place.abs_diff(from) as i32;
+        match (finer, coarser) {
+            (Some((from, fine)), Some((to, coarse))) if from < to => {
+                let way = steps(from) as f32 / (to - from) as f32;
+                Some(fine.powf(1.0 - way) * coarse.powf(way))
+            }
+            (Some((from, fine)), _) => Some(fine * OF_FINER.powi(steps(from))),
+            (None, Some((to, coarse))) => Some(coarse * OF_COARSER.powi(steps(to))),
+            (None, None) => None,
+        }
     }
 }
 
@@ -50,8 +53,11 @@ mod tests {
         costs.note(8, 2.0);
         assert_eq!(costs.expected(8), Some(2.0));
         assert_eq!(costs.expected(2), Some(32.0));
-        costs.note(1, 20.0);
-        assert_eq!(costs.expected(2), Some(10.0));
+        costs.note(1, 16.0);
+        for (stride, expected) in [(2, 8.0), (4, 4.0)] {
+            let millis = costs.expected(stride).unwrap();
+            assert!((millis - expected).abs() < 1e-4, "{stride}: {millis}");
+        }
         costs.note(2, 6.0);
         costs.note(2, 8.0);
         assert_eq!(costs.expected(2), Some(7.0));
