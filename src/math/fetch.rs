@@ -482,6 +482,7 @@ mod tests {
     /// Elements, halves and pairs of a table by each kind of vector.
     struct Fetches<'a> {
         words: &'a [[u32; 3]],
+        pairs_of_words: &'a [[u32; 2]],
         halves: &'a [u16],
         at: [u32; MAX_LANES],
     }
@@ -489,7 +490,12 @@ mod tests {
     impl Kernel for Fetches<'_> {
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) {
-            let Self { words, halves, at } = self;
+            let Self {
+                words,
+                pairs_of_words,
+                halves,
+                at,
+            } = self;
             let lanes = S::u32s::LEN;
             let indices = S::u32s::from_slice(simd, &at[..lanes]);
             let stored = |x: S::u32s| {
@@ -502,6 +508,12 @@ mod tests {
             for n in 0..3 {
                 for (found, &i) in stored(found[n]).iter().zip(at) {
                     assert_eq!(*found, words[i as usize][n]);
+                }
+            }
+            let found = super::words::<S, [u32; 2], 2>(pairs_of_words, indices);
+            for n in 0..2 {
+                for (found, &i) in stored(found[n]).iter().zip(at) {
+                    assert_eq!(*found, pairs_of_words[i as usize][n]);
                 }
             }
             for (found, &i) in stored(super::halves::<S>(halves, indices)).iter().zip(at) {
@@ -539,6 +551,8 @@ mod tests {
         for len in [1_u32, 2, 3, 7, 16, 1000] {
             // Boxed slices end where they end, so that tools which watch memory see every step beyond.
             let words: Box<[[u32; 3]]> = (0..len).map(|i| [i, i + 1, i + 2].map(number)).collect();
+            let pairs_of_words: Box<[[u32; 2]]> =
+                (0..len).map(|i| [i, i + 1].map(number)).collect();
             let halves: Box<[u16]> = (0..len).map(|i| (number(i) >> 16) as u16).collect();
             for round in 0..50 {
                 let any: [u32; MAX_LANES] =
@@ -552,6 +566,7 @@ mod tests {
                         if level.is_available() {
                             level.run_or_plain(Fetches {
                                 words: &words,
+                                pairs_of_words: &pairs_of_words,
                                 halves: &halves,
                                 at,
                             });
